@@ -1,6 +1,6 @@
 # Everything this project does with one command. `make` alone lists it.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test long fresh faults mutation lint format wheel clean
+.PHONY: help setup demo test long fresh faults mutation lint types types-win32 types-darwin contracts format wheel clean
 BIN := .venv/bin
 
 help:  ## This list
@@ -13,7 +13,7 @@ demo: .venv/ready-to-run  ## The whole console without hardware: drive, hand ove
 
 test: setup lint  ## All checks: format, lint, types, import contracts, tests
 	scripts/system-packages
-	$(BIN)/pytest --numprocesses auto --maxprocesses 4 --dist loadfile
+	$(BIN)/pytest --numprocesses auto --maxprocesses 4 --dist loadfile --no-loadscope-reorder
 
 long: setup  ## The random and long checks at their full size, with seeds drawn anew: docs/long-run.md; hours
 	scripts/system-packages
@@ -33,9 +33,16 @@ mutation: setup  ## Mutation score of control/ into docs/mutation.md; some minut
 lint: .venv/ready-to-test  ## Format, lint, types and import contracts only
 	$(BIN)/ruff format --check --quiet
 	$(BIN)/ruff check --quiet
+	$(MAKE) --no-print-directory --jobs 2 --output-sync types types-win32 types-darwin contracts
+
+types:
 	$(BIN)/mypy
 	$(BIN)/mypy benchmarks scripts
-	for platform in win32 darwin; do $(BIN)/mypy --platform $$platform --cache-dir .mypy_cache/$$platform simconsole || exit 1; done
+
+types-win32 types-darwin: types-%:
+	$(BIN)/mypy --platform $* --cache-dir .mypy_cache/$* simconsole
+
+contracts:
 	$(BIN)/lint-imports --no-logo
 
 format: .venv/ready-to-test  ## Rewrite the sources in the project's format

@@ -29,7 +29,7 @@ UNDER_WAY = 20
 RATE_HZ = 100
 DOMAIN = 71
 SILENCE_S = 0.5
-START_S = 30.0
+START_S = 120.0  # the first start compiles
 WAYS = {"in": "client to node", "out": "node to client", "between": "client to client"}
 CONTENT = {
     "header": {"stamp": {"sec": 1, "nanosec": 2}, "frame_id": "map"},

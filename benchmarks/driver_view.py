@@ -14,7 +14,6 @@ from typing import NamedTuple
 import moderngl
 
 from simconsole.hud.driver_view.motion import ShownVehicle
-from simconsole.hud.driver_view.scene import view_scene
 from simconsole.hud.gl.cockpit_picture import CockpitPicture
 from simconsole.hud.gl.context import renderer_name, windowless_context
 from simconsole.hud.screen import Screen, fit
@@ -58,7 +57,7 @@ def measured(size: tuple[int, int], frames: int, *, rich: bool, mirrors: bool) -
     profile = DriverViewProfile(always_rich=rich, mirrors=mirrors)
     picture = CockpitPicture(
         context,
-        view_scene(job.drawing, job.limit_kmh, job.size),
+        job.scene(),
         profile,
         fit(Screen(*size, 1.6, 2.2, has_view=True), *size),
         job.steering_ratio,

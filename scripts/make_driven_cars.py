@@ -7,17 +7,17 @@ import argparse
 import json
 from pathlib import Path
 
-from validation.driven import CARS, FIGURES, NOT_MODELLED, Figure, inside, measured
+from validation.driven import CARS, FIGURES, NOT_MODELLED, SOURCES, Figure, inside, measured
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "driven_cars.md"
 
 INTRODUCTION = """# The driven cars
 
 Written by `scripts/make_driven_cars.py`, which drives every manoeuvre anew through the whole console; nobody types a
-figure. Beside each stands the usual range of the class, and where it comes from. A figure out of range is marked 🔴.
-Hatchback and light van are nobody's cars; the BMW 320i is the car of CommonRoad's models, with their gaps: neutral
-steer, no anti-dive, no driver aids, nothing at the rim (n/a), no losses (so it does not roll down to the speed at which
-braking begins: none), and the hatchback's engine and brakes. Its red figures are theirs.
+figure. Beside each stands the usual range of the class, and where it comes from (numbers: below the table). A figure
+out of range is marked 🔴. Hatchback and light van are nobody's cars; the BMW 320i is the car of CommonRoad's models,
+with their gaps: neutral steer, no anti-dive, no driver aids, nothing at the rim (n/a), no losses (so it does not roll
+down to the speed at which braking begins: none), and the hatchback's engine and brakes. Its red figures are theirs.
 
 | Figure | Hatchback | Light van | BMW 320i | cars | vans | source of the range |
 | --- | --- | --- | --- | --- | --- | --- |
@@ -50,7 +50,8 @@ def page(found: Found) -> str:
         cells = [cell(found, car, figure) for car in CARS]
         ranges = [f"{low:g} to {high:g} {figure.unit}".strip() for low, high in (figure.car, figure.van)]
         rows.append(f"| {' | '.join((figure.label, *cells, *ranges, figure.source))} |")
-    return INTRODUCTION + "\n".join((*rows, "", *(_outside(found, car) for car in CARS), ""))
+    sources = [f"{number}. {source}" for number, source in enumerate(SOURCES, 1)]
+    return INTRODUCTION + "\n".join((*rows, "", *(_outside(found, car) for car in CARS), "", *sources, ""))
 
 
 def _outside(found: Found, car: str) -> str:

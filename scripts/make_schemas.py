@@ -16,6 +16,7 @@ from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.scenario import ScenarioProfile
 from simconsole.profiles.session import SessionProfile
 from simconsole.profiles.vehicle import VehicleProfile
+from simconsole.profiles.view import LanguageProfile
 from simconsole.profiles.world import WorldProfile
 from simconsole.recording.bundles.manifest import Manifest
 from simconsole.recording.bundles.sealing import KEY
@@ -24,6 +25,7 @@ from simconsole.recording.bundles.signing import Signature
 FOLDER = Path(__file__).resolve().parents[1] / "docs" / "schemas"
 KINDS = {
     "device": CockpitProfile,
+    "language": LanguageProfile,
     "scenario": ScenarioProfile,
     "session": SessionProfile,
     "vehicle": VehicleProfile,

@@ -32,7 +32,8 @@ Each row is {count} random courses: 500 to 1200 m, bends of 8 to 60 m radius to 
 of its own that is connected by a WebSocket and drives behind the console's gate. Odometry comes at 50 Hz with white
 noise of 2 cm and 0.2 degrees; commands act the given time after the state that they answer. With drift, odometry
 wanders by 0.3 m and 0.3 degrees (standard deviations) within 20 s, and errors are those against odometry without its
-white noise; elsewhere they are the true ones. All rows of one car drive the same courses at the same planned speed.
+white noise; elsewhere they are the true ones. All rows of one car drive the same courses at the same planned speed. A
+stop is a lap that was not driven to its end: by the console's safe stop, or a take-over.
 
 "preview" is the autopilot's own tracker (`drivers/path_tracker`, decision 12), designed with each car's own model.
 Pure pursuit (0.6 s, at least 4 m ahead) and Stanley (gain 1.5 /s) are plain: they take odometry as it comes and know

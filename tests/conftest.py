@@ -13,11 +13,11 @@ import signal
 import pytest
 
 from tests import long_run
-from tests.drives.fixtures import demo, script, short
+from tests.drives.fixtures import demo, once, script, short
 from tests.faults import figures
 from tests.samples import SAMPLED, draw_seed, measured, module_sample, sample
 
-__all__ = ["demo", "measured", "module_sample", "sample", "script", "short"]
+__all__ = ["demo", "measured", "module_sample", "once", "sample", "script", "short"]
 
 # A shell starts background jobs with SIGINT ignored, and nohup ignores SIGHUP; every program that a test starts would
 # inherit that: a Ctrl-C or a hang-up sent to it would be lost, however the tests themselves were started.
@@ -32,6 +32,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--seed", type=int, help="replay: the seed that a run has told")
     parser.addoption("--write-long-run", action="store_true", help="write what --long saw into docs/long-run.md")
     parser.addoption("--write-faults", action="store_true", help="write what was measured into docs/faults.md")
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers() -> int:
+    """One process more than there are cores: there is always a test that waits."""
+    return (os.cpu_count() or 1) + 1
 
 
 def pytest_configure(config: pytest.Config) -> None:

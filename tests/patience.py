@@ -17,11 +17,13 @@ PATIENCE_S: Final = 600.0
 
 
 def wait_until(condition: Callable[[], T], what: str) -> T:
-    """Look until `condition` holds, and return what it returned."""
-    deadline_s = time.monotonic() + PATIENCE_S
+    """Look until `condition` holds, and return what it returned. After a costly look others get the processor."""
+    began_s = now_s = time.monotonic()
     while not (found := condition()):
-        assert time.monotonic() < deadline_s, f"{what}: not within {PATIENCE_S} s"
-        time.sleep(0.002)
+        looked_s, now_s = now_s, time.monotonic()
+        assert now_s < began_s + PATIENCE_S, f"{what}: not within {PATIENCE_S} s"
+        time.sleep(min(max(0.002, 3.0 * (now_s - looked_s)), 1.0))
+        now_s = time.monotonic()
     return found
 
 

@@ -69,7 +69,11 @@ def tracked(pattern: str) -> set[str]:
     return {path.relative_to(ROOT).as_posix() for path in ROOT.glob(pattern) if path.is_file()}
 
 
-DATA = ("simconsole/bridge/messages/definitions/*/*/*", "simconsole/recording/exports/*.json")
+DATA = (
+    "simconsole/py.typed",
+    "simconsole/bridge/messages/definitions/*/*/*",
+    "simconsole/recording/exports/*.json",
+)
 
 
 def test_wheel_holds_the_package_and_every_profile_and_nothing_else(wheel: Path) -> None:

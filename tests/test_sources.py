@@ -25,7 +25,8 @@ UNITLESS = {
     "implausible",
     *("anti_lock_off", "traction_off", "stability_off", "gear_fault"),
     *("turn_indicators", "hazard_lights", "stalk", "hazard_switch"),
-    *("red_light", "wrong_way", "off_road", "speeding", "failing_to_yield"),
+    *("red_light", "wrong_way", "off_road", "speeding", "failing_to_yield", "collision"),
+    *("first_touch", "touches"),
     # places in a map's tuples, and a time in ticks since the start
     *("lane", "edge", "tick"),
     # members of an enumeration

@@ -10,10 +10,17 @@ from xml.etree import ElementTree
 from simconsole.cli.outcome import Outcome, table
 from simconsole.evaluation.checks.scenario_check import Verdict, check_scenario
 from simconsole.processes.lifetimes import end_with_parent
+from simconsole.values.errors import ProfileError
 
 
 def check(options: Namespace) -> Outcome:
-    """Drive every scenario; code 1 if one breaks a bound or leaves its golden."""
+    """Drive every scenario; code 1 if one breaks a bound or leaves its golden.
+
+    Raises:
+        ProfileError: a scenario cannot be read, or a golden is both to be reviewed and to be accepted.
+    """
+    if options.review and options.update_golden:
+        raise ProfileError("command line: --review: look first, then --update-golden")
     if options.jobs > 1:
         with ProcessPoolExecutor(options.jobs, get_context("spawn"), end_with_parent) as pool:
             verdicts = list(
@@ -25,6 +32,8 @@ def check(options: Namespace) -> Outcome:
         _write_junit(Path(options.junit), verdicts)
     if options.report:
         _write_report(Path(options.report), verdicts)
+    if options.review:
+        _write_review(Path(options.review), options.scenarios, verdicts)
     passed = all(verdict.passed for verdict in verdicts)
     results: dict[str, Any] = {"passed": passed, "scenarios": [_results(verdict) for verdict in verdicts]}
     return Outcome(0 if passed else 1, results, "\n".join(_line(verdict) for verdict in verdicts))
@@ -51,6 +60,16 @@ def _write_report(path: Path, verdicts: list[Verdict]) -> None:
         if verdict.result is not None
     ]
     write_handling_report(path, chapters)
+
+
+def _write_review(path: Path, scenarios: list[str], verdicts: list[Verdict]) -> None:
+    """Write the page of what differs; a scenario that left its golden is driven once more for it."""
+    from simconsole.evaluation.checks.review import review_scenario
+    from simconsole.evaluation.report.review_page import write_review
+
+    with_golden = [(name, verdict) for name, verdict in zip(scenarios, verdicts, strict=True) if verdict.result is None]
+    reviews = [review_scenario(name) for name, verdict in with_golden if not verdict.passed]
+    write_review(path, reviews, [verdict.scenario for _, verdict in with_golden if verdict.passed])
 
 
 def _write_junit(path: Path, verdicts: list[Verdict]) -> None:

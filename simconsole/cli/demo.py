@@ -26,5 +26,5 @@ def demo(options: Namespace) -> Outcome:
     resolved = resolve(session)
     folder = Path(options.out) if options.out else Path("out") / time.strftime("demo-%Y%m%d-%H%M%S")
     with Progress("driving", route_length_m(resolved.world)) as progress:
-        result = drive(resolved, folder, progress.watch)
+        result = drive(resolved, folder, show=progress.show)
     return finish(result, packed=not options.no_pack)

@@ -14,7 +14,7 @@ from simconsole.profiles.person import ROUTE_DRIVER
 from simconsole.profiles.session import SessionProfile
 from simconsole.recording.bundles.provenance import Given
 from simconsole.session.lifecycle import drive as drive_session
-from simconsole.session.resolution import load_session, override, resolve
+from simconsole.session.resolution import headless, load_session, override, resolve
 from simconsole.session.seat import look_for_devices
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import DeviceNotFound, ProfileError
@@ -25,13 +25,13 @@ def drive(options: Namespace) -> Outcome:
     """Drive the named session with the options of the command line laid over it."""
     given = Given(participant=options.participant, trial=options.trial, notes=tuple(options.note)).checked()
     session = _with_options(load_session(options.session), options)
-    resolved = resolve(session, options.cockpit)
+    resolved = resolve(session, options.cockpit, options.language)
     if options.choose or session.devices.driver == "sdl":
         asks = not (options.json or options.headless)
         resolved = _with_a_cockpit(resolved, choose=options.choose, asks=asks)
     folder = Path(options.out) if options.out else Path("out") / time.strftime("drive-%Y%m%d-%H%M%S")
     with Progress("driving", route_length_m(resolved.world)) as progress:
-        result = drive_session(resolved, folder, progress.watch, given=given)
+        result = drive_session(resolved, folder, show=progress.show, given=given)
     outputs = resolved.session.outputs
     return finish(result, report=outputs.report, scene=outputs.scene is not None, packed=not options.no_pack)
 
@@ -56,7 +56,7 @@ def _with_a_cockpit(resolved: ResolvedSession, *, choose: bool, asks: bool) -> R
     session = ask(resolved.session, message) if asks and somebody_can_be_asked() else None
     if session is None:
         raise missing from None
-    return resolve(session)
+    return msgspec.structs.replace(resolve(session), language=resolved.language)
 
 
 def _with_options(session: SessionProfile, options: Namespace) -> SessionProfile:
@@ -76,8 +76,7 @@ def _with_options(session: SessionProfile, options: Namespace) -> SessionProfile
         if options.headless and session.mode.pacing == "lockstep":
             session = override(session, mode={"pacing": "free"})  # nobody is left to wait for
     if options.headless:
-        pacing = "free" if session.mode.pacing == "realtime" else session.mode.pacing
-        session = override(session, outputs={"hud": None}, mode={"pacing": pacing})
+        session = headless(session)
     return session
 
 

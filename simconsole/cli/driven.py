@@ -70,7 +70,9 @@ def _patience(result: DriveResult) -> str:
 
 
 def _driven_rows(result: DriveResult) -> list[tuple[str, str]]:
+    ended = result.summary.get("ended")
     return [
+        *([] if ended is None else [("ended", ended)]),
         ("tick lateness", result.summary["lateness"]),
         ("real-time factor", f"{result.summary['real_time_factor']:.1f}"),
         ("bundle", str(result.folder)),
@@ -79,8 +81,14 @@ def _driven_rows(result: DriveResult) -> list[tuple[str, str]]:
 
 def _link(result: DriveResult) -> str:
     """Return what the autopilot's odometry and link were like."""
-    bridge = recorded_session(open_bundle(result.folder)).session.outputs.bridge
-    return "" if bridge is None else link_label(bridge.link)
+    from simconsole.bridge.console.topics import ODOMETRY, ODOMETRY_HZ
+
+    session = recorded_session(open_bundle(result.folder)).session
+    bridge, mode = session.outputs.bridge, session.mode
+    if bridge is None:
+        return ""
+    odometry_hz = mode.control_hz if mode.pacing == "lockstep" else bridge.rates_hz.get(ODOMETRY, ODOMETRY_HZ)
+    return f"{link_label(bridge.link)}, at {odometry_hz:g} Hz"
 
 
 def _rows(result: DriveResult, metrics: dict[str, Any], link: str) -> list[tuple[str, str]]:

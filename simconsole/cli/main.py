@@ -8,11 +8,12 @@ that does it, loaded when it is called.
 import argparse
 import os
 import sys
+from collections.abc import Callable
 from importlib import import_module
 from typing import Any, TextIO
 
 from simconsole import __version__
-from simconsole.drivers.path_tracker.tracker_settings import TRACKERS
+from simconsole.drivers.path_tracker.tracker_settings import GATE, TRACKERS
 from simconsole.processes.lifetimes import (
     ATTACHED,
     INTERRUPTED,
@@ -26,7 +27,7 @@ from simconsole.processes.lifetimes import (
 )
 from simconsole.values.errors import SimConsoleError, one_line
 
-_MAX_DELAY_MS = 1000.0
+_MAX_DELAY_MS = 6000.0  # the longest delay that a session's link may have each way, and its jitter on average
 _AT_ONCE = ("demo", "drive", "bridge", "report", "view", "pack", "unpack")
 """Commands that Ctrl-C ends at once unless a drive handles it itself: they leave nothing half made. In the others it
 raises KeyboardInterrupt, which for some is the normal way to their result."""
@@ -109,11 +110,16 @@ def _command(commands: Any, name: str, does: str, summary: str) -> argparse.Argu
     return command
 
 
-def _delay_ms(text: str) -> float:
-    delay_ms = float(text)
-    if not 0.0 <= delay_ms <= _MAX_DELAY_MS:
-        raise argparse.ArgumentTypeError(f"{text}: 0 to {_MAX_DELAY_MS:g} ms")
-    return delay_ms
+def _number(least: float, most: float, unit: str) -> Callable[[str], float]:
+    """Return what reads a number within bounds."""
+
+    def number(text: str) -> float:
+        value = float(text)
+        if not least <= value <= most:
+            raise argparse.ArgumentTypeError(f"{text}: {least:g} to {most:g} {unit}")
+        return value
+
+    return number
 
 
 def _driving(commands: Any) -> None:
@@ -132,6 +138,7 @@ def _driving(commands: Any) -> None:
     drive.add_argument("--person", type=int, metavar="SEED", help="with the driver virtual: which simulated person")
     drive.add_argument("--commands", metavar="C", help="bag:FILE[:TOPIC]: recorded commands in place of a controller's")
     drive.add_argument("--cockpit", metavar="PROFILE", help="a cockpit by name, or the file that `calibrate` wrote")
+    drive.add_argument("--language", metavar="L", help="of the display: english, german, or a .yaml file")
     drive.add_argument("--for", dest="duration_s", type=float, metavar="S", help="end after S simulated seconds")
     drive.add_argument("--out", metavar="DIR", help="where the bundle goes (default: out/drive-TIME)")
     drive.add_argument("--participant", default="", metavar="ID", help="who drives; kept in the bundle from the start")
@@ -145,6 +152,7 @@ def _driving(commands: Any) -> None:
     check.add_argument("--jobs", type=int, default=1, metavar="N", help="drive N at a time")
     check.add_argument("--report", metavar="FILE", help="write values and plots of the test manoeuvres as HTML")
     check.add_argument("--junit", metavar="FILE", help="write a JUnit report")
+    check.add_argument("--review", metavar="FILE", help="write accepted and driven over each other, where they differ")
     check.add_argument("--update-golden", action="store_true", help="accept what was driven as the new golden")
 
 
@@ -183,9 +191,24 @@ def _beside_a_drive(commands: Any) -> None:
     autopilot.add_argument("--course", default="urban", metavar="WORLD")
     autopilot.add_argument("--vehicle", default="hatchback", metavar="VEHICLE", help="the car that it drives")
     autopilot.add_argument(
-        "--delay-ms", type=_delay_ms, default=10.0, metavar="MS", help="from a state's stamp to its command's effect"
+        "--delay-ms", type=_number(0.0, _MAX_DELAY_MS, "ms"), default=10.0, metavar="MS", help="from state to effect"
     )
     autopilot.add_argument("--tracker", choices=TRACKERS, default=TRACKERS[0], help="how it steers")
+    autopilot.add_argument(
+        "--lateral-accel",
+        type=_number(0.1, 20.0, "m/s2"),
+        default=GATE.lateral_mps2,
+        metavar="MPS2",
+        help="that the console's gate lets pass",
+    )
+    autopilot.add_argument(
+        "--lateral-jerk",
+        type=_number(0.0, 100.0, "m/s3"),
+        default=GATE.lateral_jerk_mps3,
+        metavar="MPS3",
+        help="the same; 0: any",
+    )
+    autopilot.add_argument("--plan-hz", type=_number(0.0, 20.0, "Hz"), default=0.0, help="how often it tells its plan")
     autopilot.add_argument("--wait", type=float, default=10.0, metavar="S", help="how long to wait for the server")
     autopilot.add_argument("--namespace", default="", metavar="NS", help="of the console's topics")
     autopilot.add_argument("--rename", action="append", default=[], metavar="/TOPIC=/NAME", help="what one is called")
@@ -203,11 +226,16 @@ def _recordings(commands: Any) -> None:
     sign.add_argument("--new-key", metavar="FILE", help="make a key there, and its public half in FILE.pub")
     sign.add_argument("--remove", action="store_true", help="take the signature away, to change the bundle")
     report = _command(commands, "report", "recordings:report", "write the HTML report of a bundle")
-    view = _command(commands, "view", "recordings:view", "write a bundle's scene.rrd, and open it in rerun")
-    for command in (replay, verify, report, view):
+    view = _command(commands, "view", "recordings:view", "show a drive in rerun: a bundle's, or the one that goes on")
+    for command in (replay, verify, report):
         command.add_argument("bundle", metavar="BUNDLE", help="the folder that a drive has written")
     verify.add_argument("--signer", metavar="FILE.pub", help="the public key that must have signed it")
-    view.add_argument("--no-open", action="store_true", help="only write scene.rrd")
+    view.add_argument("bundle", nargs="?", metavar="BUNDLE", help="a drive's folder (default: the drive that goes on)")
+    view.add_argument("--no-open", action="store_true", help="only write scene.rrd, or only serve the drive")
+    view.add_argument("--browser", action="store_true", help="open it in the browser, served until Ctrl-C")
+    view.add_argument("--port", type=int, default=0, help="serve it to native viewers there")
+    view.add_argument("--web-port", type=int, default=0, help="and to browsers there (default: free ports)")
+    view.add_argument("--memory", default="1GiB", metavar="SIZE", help="what is kept for viewers who join late")
     pack = _command(commands, "pack", "recordings:pack", "make the logs of bundles small; all commands read both forms")
     unpack = _command(commands, "unpack", "recordings:unpack", "make the logs of packed bundles again, byte for byte")
     for command in (pack, unpack):
@@ -215,6 +243,14 @@ def _recordings(commands: Any) -> None:
     compare = _command(commands, "compare", "recordings:compare", "find every field in which two bundles differ")
     compare.add_argument("bundle", metavar="A")
     compare.add_argument("other", metavar="B")
+    replay.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="KEY=VALUE",
+        help="make the drive with this value changed, as body.mass_kg=1600, into a bundle of its own; several times",
+    )
+    replay.add_argument("--out", metavar="DIR", help="with --set: the new bundle (default: beside the old one)")
     for command in (replay, compare):
         command.add_argument("--tolerances", metavar="FILE", help="YAML or JSON: field or pattern to what may differ")
 
@@ -256,6 +292,8 @@ def _video(commands: Any) -> None:
     video.add_argument("--to", dest="to_s", type=float, metavar="S", help="simulated seconds (default: the end)")
     video.add_argument("--fps", type=int, default=30, metavar="N", help="frames a second (default: 30)")
     video.add_argument("--night", action="store_true", help="by the light of the headlamps")
+    video.add_argument("--language", metavar="L", help="of the display, if not the drive's own")
+    video.add_argument("--large-text", action="store_true", help="as outputs.hud.large_text")
     video.add_argument("--rich", action="store_true", help="mirrors and shadows also where the processor draws: slow")
     video.add_argument("--png", nargs=2, metavar=("S", "FILE"), help="no video: one picture, of this simulated second")
 
@@ -350,5 +388,10 @@ def _tools(commands: Any) -> None:
     )
     bridge.add_argument("--trust-network", action="store_true", help="other machines need no token and no TLS")
     bridge.add_argument("--out", metavar="DIR", default=".", help="where `cert` writes")
+
+    new = _command(commands, "new", "new.command:new", "a template that runs at once, with a test beside it")
+    new.add_argument("kind", choices=("controller", "scenario", "vehicle", "world", "session"))
+    new.add_argument("name", metavar="NAME", help="lower-case letters, digits and _")
+    new.add_argument("--out", metavar="DIR", default=".", help="where (default: here)")
 
     _command(commands, "doctor", "doctor:doctor", "what this machine has and lacks")

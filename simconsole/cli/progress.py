@@ -25,6 +25,7 @@ class Progress:
         self._length_m = length_m
         self._shown = sys.stderr.isatty()
         self._next_s = 0.0
+        self._next_tick = TICKS_BETWEEN_LOOKS
         self._shares: dict[str, float] = {}
 
     def __enter__(self) -> Self:
@@ -38,16 +39,18 @@ class Progress:
         """Wipe the line."""
         self._write("")
 
-    def watch(self, snapshot: Snapshot) -> bool:
-        """Show one tick of a drive, at most every INTERVAL_S; return False: it never ends the drive."""
-        if self._shown and snapshot.tick % TICKS_BETWEEN_LOOKS == 0 and time.monotonic() >= self._next_s:
+    def show(self, snapshot: Snapshot) -> None:
+        """Show where a drive is, at most every INTERVAL_S."""
+        if not self._shown or snapshot.tick < self._next_tick:
+            return
+        self._next_tick = snapshot.tick + TICKS_BETWEEN_LOOKS
+        if time.monotonic() >= self._next_s:
             self._next_s = time.monotonic() + INTERVAL_S
             vehicle, mode = snapshot.vehicle, Mode(int(snapshot.arbitration.mode))
             way = f"{vehicle.distance_m:7.1f} m" + (f" of {self._length_m:.0f} m" if self._length_m else "")
             speed = f"{vehicle.vx_mps * KMH_PER_MPS:5.1f} km/h"
             alarm = f"  {RECORDING_FAILED}" if snapshot.recording_failed else ""
             self._write(f"{self._what}: {snapshot.t_s:7.1f} s  {way}  {speed}  {mode_label(float(mode))}{alarm}")
-        return False
 
     def count(self, done: int, total: int = 0) -> None:
         """Show how many ticks of `total` (0: unknown) are done, at most every INTERVAL_S."""

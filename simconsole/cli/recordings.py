@@ -1,9 +1,12 @@
 """`simconsole replay | verify | sign | compare | report | view | pack | unpack`: what can be done with a bundle."""
 
+import re
+import sys
+import time
 from argparse import Namespace
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from simconsole.cli.differing import columns_text, differences_text, plain_differences, read_tolerances
 from simconsole.cli.outcome import Outcome
@@ -17,6 +20,10 @@ from simconsole.recording.bundles.verification import coverage, examine
 from simconsole.recording.compare import compare as compare_logs
 from simconsole.values.errors import RecordingError
 
+if TYPE_CHECKING:
+    from simconsole.processes.running_scene import RunningScene
+
+LOOK_S: Final = 0.05
 REPLAY: Final = ("recorded", "replayed")
 COMPARISON: Final = ("first", "second")
 
@@ -25,6 +32,10 @@ def replay(options: Namespace) -> Outcome:
     """Re-simulate a bundle from its recorded inputs; code 1 with a table of the fields that differ."""
     from simconsole.recording.bundles.replay_bundle import replay_bundle
 
+    if options.set:
+        return _counterfactual(options)
+    if options.out is not None:
+        raise RecordingError("command line: --out: only with --set, which makes another drive")
     result = replay_bundle(Path(options.bundle), read_tolerances(options.tolerances))
     covered = coverage(Path(options.bundle))
     results = {
@@ -49,6 +60,29 @@ def replay(options: Namespace) -> Outcome:
     lines += columns_text(result.new, "new, not in the recording")
     lines += columns_text(result.missing, "in the recording only")
     return Outcome(0 if result.good else 1, results, "\n".join((*lines, *result.problems, *result.remarks)))
+
+
+def _counterfactual(options: Namespace) -> Outcome:
+    """Make the drive again with values changed, into a bundle of its own with a paired report."""
+    from simconsole.evaluation.counterfactual.drive_again import OPEN_LOOP, changes_of, drive_again
+    from simconsole.evaluation.counterfactual.pair import PAIR, write_pair
+
+    folder, values = Path(options.bundle), changes_of(options.set)
+    beside = re.sub(r"[^\w.=-]", "_", "-".join((folder.resolve().name, *options.set)))
+    out = Path(options.out) if options.out else folder.resolve().with_name(beside)
+    again = drive_again(folder, values, out)
+    found = write_pair(folder, again, values)
+    remarks = []
+    if not again.unchanged.equal:
+        remarks.append(
+            f"{folder}: unchanged, this version makes it differently in {len(again.unchanged.differences)} fields"
+        )
+    fields = again.changed.differences
+    results = {"bundle": str(out), "report": str(out / PAIR), "fields": len(fields), "driver": OPEN_LOOP, **found}
+    lines = [f"{folder}: {again.changed.ticks} ticks with {', '.join(options.set)}: {len(fields)} fields differ"]
+    lines += [f"{OPEN_LOOP}", f"at most {found['apart_max_m']:.3f} m apart", str(out), str(out / PAIR)]
+    problems = list(again.changed.problems)
+    return Outcome(1 if problems else 0, {**results, "problems": problems}, "\n".join((*lines, *remarks, *problems)))
 
 
 def verify(options: Namespace) -> Outcome:
@@ -119,17 +153,71 @@ def report(options: Namespace) -> Outcome:
 
 
 def view(options: Namespace) -> Outcome:
-    """Write scene.rrd into the bundle and open it in rerun, unless told not to. That of a signed bundle stays."""
-    from simconsole.evaluation.report.exports import open_viewer, write_scene
+    """Write scene.rrd into the bundle and open it in rerun, unless told not to. That of a signed bundle stays.
+
+    A drive that goes on is shown while it does: that of the bundle, or the newest where none is named.
+    """
+    from simconsole.processes.running_scene import newest_scene, scene_of
+
+    running = newest_scene() if options.bundle is None else scene_of(Path(options.bundle))
+    if running is not None:
+        return _serve(running.path, running, options)
+    from simconsole.evaluation.report.exports import write_scene
     from simconsole.evaluation.report.scene_export import SCENE
+    from simconsole.scene.viewer.scene_server import open_native
 
     folder = Path(options.bundle)
     signed = (folder / SIGNATURE).exists() and SCENE in read_manifest(folder).files
     with Progress("writing the scene") as progress:
         path = folder / SCENE if signed else write_scene(folder, progress.done)
+    if options.browser and not options.no_open:
+        return _serve(path, None, options)
     if not options.no_open:
-        open_viewer(path)
+        open_native(str(path))
     return _of_whole_drive(options.bundle, {"scene": str(path)}, str(path))
+
+
+def _serve(path: Path, drive: "RunningScene | None", options: Namespace) -> Outcome:
+    """Serve a scene until Ctrl-C, of a drive that goes on or of none, and open a viewer unless told not to.
+
+    What was shown stays in the viewers, and is served on, after the drive has ended.
+
+    Raises:
+        WorkerError: rerun's server does not start, or has ended.
+    """
+    from simconsole.processes.lifetimes import INTERRUPTED, Interrupt
+    from simconsole.scene.viewer.scene_server import Ports, SceneServer, open_browser, open_native
+
+    served, ended, window = 0, drive is None, None
+    with Interrupt() as interrupt:
+        server = SceneServer(path, Ports(options.port, options.web_port), options.memory)
+        native, browser = server.addresses
+        _say(f"serving {path}")
+        _say(f"viewers of this machine: rerun --connect {native}")
+        _say(f"browsers of this machine: {browser}")
+        try:
+            if options.browser:
+                open_browser(browser)
+            elif not options.no_open:
+                window = open_native(native)
+            while not interrupt.raised:
+                served += server.pump()
+                if window is not None and window.poll() is not None:
+                    if window.returncode:
+                        _say("rerun's own window could not be opened, as it says above: try the browser's address")
+                    window = None
+                if drive is not None and not ended and not drive.goes_on:
+                    ended = True
+                    _say("the drive has ended; Ctrl-C ends the view")
+                time.sleep(LOOK_S)
+        finally:
+            server.close()
+    results = {"scene": str(path), "served_bytes": served, "native": native, "browser": browser, "ended": ended}
+    return Outcome(INTERRUPTED, results, f"{path}: {served / 1e6:.1f} MB served")
+
+
+def _say(line: str) -> None:
+    print(f"simconsole: {line}", file=sys.stderr, flush=True)
 
 
 def pack(options: Namespace) -> Outcome:

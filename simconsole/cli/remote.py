@@ -28,6 +28,7 @@ def autopilot(options: Namespace) -> Outcome:
     stop = follow_parent(END_S).wants_end if options.attached else None
     from simconsole.bridge.protocol.backoff import DEAD_AFTER_S
     from simconsole.drivers.autopilot.program import run
+    from simconsole.drivers.path_tracker.tracker_settings import Gate
 
     results = run(
         options.url,
@@ -42,6 +43,8 @@ def autopilot(options: Namespace) -> Outcome:
         vehicle=options.vehicle,
         delay_s=options.delay_ms / 1000.0,
         tracker=options.tracker,
+        plan_hz=options.plan_hz,
+        gate=Gate(options.lateral_accel, options.lateral_jerk),
         # A console that started this program and is gone closes its pipe; one that is silent is merely held up.
         dead_after_s=math.inf if options.attached else DEAD_AFTER_S,
     )

@@ -92,12 +92,20 @@ def _size(text: str) -> tuple[int, int]:
 
 
 def _pictures(bundle: Bundle, options: Namespace) -> "DrivePictures":
+    from msgspec.structs import replace
+
     from simconsole.evaluation.video.drive_pictures import DrivePictures, Wanted
     from simconsole.recording.bundles.replay_bundle import recorded_session
+    from simconsole.session.resolution import language_of
 
     width, height = _size(options.size)
-    wanted = Wanted(width, height, options.camera, night=options.night, rich=options.rich)
-    return DrivePictures(recorded_session(bundle), wanted)
+    wanted = Wanted(
+        width, height, options.camera, night=options.night, rich=options.rich, large_text=options.large_text
+    )
+    resolved = recorded_session(bundle)
+    if options.language is not None:
+        resolved = replace(resolved, language=language_of(options.language))
+    return DrivePictures(resolved, wanted)
 
 
 def _sound(bundle: Bundle, fps: int) -> "DriveSound":

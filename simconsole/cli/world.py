@@ -7,7 +7,7 @@ from typing import Any
 from simconsole.cli.outcome import Outcome, table
 from simconsole.profiles.files.loader import names, read_bytes
 from simconsole.profiles.files.world_files import MAX_MAP_BYTES, load_world
-from simconsole.profiles.session import PROFILE_FILES
+from simconsole.profiles.validation import PROFILE_FILES
 from simconsole.profiles.world import ArenaProfile, RoadsProfile, WorldProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.units import KMH_PER_MPS
@@ -101,7 +101,7 @@ def _landmarks(kinds: list[str]) -> str:
 def _told(facts: dict[str, str], road_map: RoadMap, losses: list[str]) -> Outcome:
     report, geo = road_map.report, road_map.geo
     rows = [*facts.items(), *((name, str(count)) for name, count in report.counts)]
-    rows.append(("buildings and cones", str(len(road_map.obstacles))))
+    rows.append(("fixed things", _landmarks([thing.kind for thing in road_map.obstacles])))
     rows.append(("on the earth", "not said" if geo.projection == "!" else geo.projection))
     lines = [table(rows), *(f"  lost: {loss}" for loss in losses), *_not_read(report)]
     results: dict[str, Any] = {

@@ -1,14 +1,13 @@
 """How whoever drives keeps behind the vehicle ahead. Pure.
 
-The Intelligent Driver Model: Treiber, Hennecke and Helbing, "Congested traffic states in empirical observations and
-microscopic simulations", Physical Review E 62 (2000) 1805; without its free-road term, which the speed plan of the
-road takes the place of.
+The Intelligent Driver Model, as of traffic (`world/traffic/following.py`), without its free-road term, which the speed
+plan of the road takes the place of.
 """
 
 import math
 from typing import NamedTuple
 
-NEAREST_M = 0.1
+from simconsole.world.traffic.following import gap_share
 
 
 class Following(NamedTuple):
@@ -32,7 +31,6 @@ def following_mps2(gap_m: float, lead_mps: float, speed_mps: float, how: Followi
     """
     if gap_m == math.inf:
         return how.accelerate_mps2
-    closing_m = speed_mps * (speed_mps - lead_mps) / (2.0 * math.sqrt(how.accelerate_mps2 * how.brake_mps2))
-    wanted_m = how.gap_m + max(0.0, speed_mps * how.headway_s + closing_m)
-    share = wanted_m / max(gap_m, NEAREST_M)
+    twice_root = 2.0 * math.sqrt(how.accelerate_mps2 * how.brake_mps2)
+    share = gap_share(gap_m, speed_mps, lead_mps, how.gap_m, how.headway_s, twice_root)
     return max(-how.hardest_mps2, how.accelerate_mps2 * (1.0 - share * share))

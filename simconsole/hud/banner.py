@@ -27,6 +27,9 @@ from simconsole.hud.shapes import exclamation, mode_shape
 from simconsole.hud.view import HudView
 from simconsole.values.signals import Mode
 
+MODE_UNKNOWN: Final = "MODE UNKNOWN"
+TIME: Final = "TIME"
+DISTANCE: Final = "DISTANCE"
 FLASH_HZ: Final = 2.0
 """Only escalated alerts flash, between 1 and 5 Hz."""
 
@@ -46,6 +49,8 @@ class Alert(IntEnum):
     NO_DATA = 9
 
 
+ONE_SCREEN: Final = (Alert.NOTICE, Alert.REFUSED)
+"""They stand before the driver only; all others span every screen."""
 ALERT_LABELS: Final[dict[Alert, tuple[str, str]]] = {
     Alert.RECORDING_FAILED: ("RECORDING FAILED", "drive is not kept"),
     Alert.STOPPED: ("STOPPED", ""),
@@ -100,7 +105,7 @@ def banner(view: HudView, alert: Alert, box: Box) -> list[DrawItem]:
             Text(
                 box.cx,
                 box.cy,
-                "MODE UNKNOWN",
+                view.say(MODE_UNKNOWN),
                 cap_px=0.3 * box.h,
                 colour=MUTED,
                 role="mode.label",
@@ -165,7 +170,7 @@ def slot(view: HudView, alert: Alert, box: Box, screen: Screen) -> list[DrawItem
     """Return the alert, or nothing. A take-over spans every screen; the text stands on each of them."""
     if alert is Alert.NONE:
         return _trip(view, box)
-    if alert in (Alert.NOTICE, Alert.REFUSED):
+    if alert in ONE_SCREEN:
         return _line(view.refusal_label or view.notice_label, box)
     ground, ink = _field(view, alert)
     safe = screen.safe()
@@ -178,7 +183,10 @@ def slot(view: HudView, alert: Alert, box: Box, screen: Screen) -> list[DrawItem
 def _trip(view: HudView, box: Box) -> list[DrawItem]:
     """Return driving time and distance, shown in the alert's place while there is no alert."""
     seconds = int(view.t_s)
-    cells = (("TIME", f"{seconds // 60:02d}:{seconds % 60:02d}"), ("DISTANCE", f"{0.001 * view.distance_m:.2f} km"))
+    cells = (
+        (view.say(TIME), f"{seconds // 60:02d}:{seconds % 60:02d}"),
+        (view.say(DISTANCE), f"{view.number(0.001 * view.distance_m, 2)} km"),
+    )
     items: list[DrawItem] = [Rect(box, PANEL, "trip", 0.12 * box.h)]
     for index, (name, text) in enumerate(cells):
         x = box.x + (0.3 * box.h if index == 0 else 0.5 * box.w)
@@ -203,7 +211,7 @@ def _trip(view: HudView, box: Box) -> list[DrawItem]:
 
 
 def _headline(view: HudView, alert: Alert, box: Box, ink: Colour, ground: Colour) -> list[DrawItem]:
-    head, todo = ALERT_LABELS[alert]
+    head, todo = map(view.say, ALERT_LABELS[alert])
     todo = todo or view.todo_label
     if alert in (Alert.RECORDING_FAILED, Alert.STOPPED, Alert.EMERGENCY):  # these last: answers must stay visible
         todo = view.refusal_label or view.notice_label or todo

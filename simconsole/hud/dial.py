@@ -22,6 +22,7 @@ from simconsole.hud.draw import (
     fit_cap_px,
 )
 from simconsole.hud.screen import DRIVING_ARCMIN, SECONDARY_ARCMIN, SPEED_ARCMIN
+from simconsole.hud.turn_sign import turn_sign
 from simconsole.hud.view import HudView
 
 START_DEG: Final = -130.0
@@ -29,6 +30,11 @@ SWEEP_DEG: Final = 260.0
 PIECE_DEG: Final = 20.0
 INDICATOR_HZ: Final = 1.5
 """Direction indicators flash 90 times a minute (UN Regulation 48: 90 plus or minus 30)."""
+THOUSAND_RPM: Final = "x1000 rpm"
+NO_DATA: Final = "NO DATA"
+KMH: Final = "km/h"
+AUTO: Final = "AUTO"
+UP: Final = "UP"
 FLAT: Final = -0.78
 """Height of the dial's flat foot below its centre, in radii (upwards positive)."""
 
@@ -42,6 +48,7 @@ def dial(view: HudView, box: Box) -> list[DrawItem]:
         *_band(view, cx, cy, radius),
         *_scale(view, cx, cy, radius),
         *_speed(view, cx, cy, radius),
+        *_turn(view, cx, cy, radius),
         *_gear(view, cx, cy, radius),
         *limit_sign(view, cx - 0.335 * radius, cy + 0.575 * radius, 0.135 * radius),
         *indicator_arrows(view, cx, cy - 0.86 * radius, 0.84 * radius, 0.16 * radius),
@@ -142,9 +149,9 @@ def _scale(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]
             )
     unit = Text(
         cx,
-        cy - 0.48 * radius,
-        "x1000 rpm",
-        cap_px=0.045 * radius,
+        cy - 0.59 * radius,
+        view.say(THOUSAND_RPM),
+        cap_px=0.055 * radius,
         colour=MUTED,
         role="dial.unit",
         anchor="c",
@@ -162,12 +169,13 @@ def _tick(cx: float, cy: float, inner: float, outer: float, clock_deg: float, wh
 
 def _speed(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]:
     if view.stale:
+        text = view.say(NO_DATA)
         return [
             Text(
                 cx,
                 cy - 0.06 * radius,
-                "NO DATA",
-                cap_px=0.17 * radius,
+                text,
+                cap_px=fit_cap_px(text, 0.17 * radius, 1.15 * radius),
                 colour=MUTED,
                 role="speed",
                 anchor="c",
@@ -188,7 +196,7 @@ def _speed(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]
         Text(
             cx,
             cy + 0.28 * radius,
-            "km/h",
+            view.say(KMH),
             cap_px=0.07 * radius,
             colour=MUTED,
             role="speed.unit",
@@ -196,6 +204,13 @@ def _speed(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]
             arcmin=DRIVING_ARCMIN,
         ),
     ]
+
+
+def _turn(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]:
+    """Return the navigation arrow above the speed."""
+    if view.stale or view.ahead is None:
+        return []
+    return turn_sign(view, view.ahead, Box(cx - 0.36 * radius, cy - 0.54 * radius, 0.72 * radius, 0.245 * radius))
 
 
 def _gear(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]:
@@ -213,7 +228,7 @@ def _gear(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]:
             Text(
                 x,
                 box.cy,
-                "AUTO",
+                view.say(AUTO),
                 cap_px=0.06 * radius,
                 colour=MUTED,
                 role="gear.automatic",
@@ -222,7 +237,7 @@ def _gear(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]:
             )
         )
     elif is_over_red(view) and not view.stale:
-        items += _shift_up(Box(box.right + 0.07 * radius, box.cy - 0.06 * radius, 0.12 * radius, 0.12 * radius))
+        items += _shift_up(view, Box(box.right + 0.07 * radius, box.cy - 0.06 * radius, 0.12 * radius, 0.12 * radius))
     return items
 
 
@@ -232,12 +247,12 @@ def is_over_red(view: HudView) -> bool:
     return has_higher and view.rpm >= view.settings.rpm_red
 
 
-def _shift_up(box: Box) -> list[DrawItem]:
+def _shift_up(view: HudView, box: Box) -> list[DrawItem]:
     arrow = ((box.cx, box.y), (box.right, box.bottom), (box.x, box.bottom))
     label = Text(
         box.right + 0.3 * box.w,
         box.cy,
-        "UP",
+        view.say(UP),
         cap_px=0.6 * box.h,
         colour=CAUTION,
         role="shift",

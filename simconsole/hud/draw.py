@@ -10,10 +10,10 @@ BACKGROUND: Final[Colour] = (8, 11, 16)
 PANEL: Final[Colour] = (18, 24, 33)
 LINE: Final[Colour] = (52, 64, 80)
 TEXT: Final[Colour] = (242, 245, 247)
-MUTED: Final[Colour] = (169, 180, 192)
+MUTED: Final[Colour] = (182, 192, 203)
 ACTIVE: Final[Colour] = (54, 217, 123)
 CAUTION: Final[Colour] = (255, 176, 32)
-DANGER: Final[Colour] = (158, 11, 24)
+DANGER: Final[Colour] = (142, 8, 20)
 INK: Final[Colour] = (10, 12, 16)
 WARNING_LINE: Final[Colour] = (255, 92, 92)  # red for thin shapes on the dark ground, never for text
 
@@ -117,14 +117,24 @@ _WIDTHS: Final = (
     "458 458 420 229 208 228 401 412 229 382 420 382 420 382 229 419 420 191 191 382 191 611 420 420 420 420 267 381 "
     "229 420 382 534 382 382 343 267 193 267 401"
 )
+_LATIN_WIDTHS: Final = (
+    "297 228 382 381 382 382 193 382 229 506 254 381 401 297 506 228 416 401 242 241 229 420 382 191 229 241 251 382 "
+    "597 597 597 420 496 496 496 496 496 497 686 496 458 458 458 458 191 191 191 192 496 496 534 534 534 534 534 401 "
+    "534 496 496 496 496 458 458 420 382 382 382 382 382 382 611 382 382 382 382 382 191 191 191 192 420 420 420 420 "
+    "420 420 420 401 420 420 420 420 420 382 420 383"
+)
 _CAP: Final = 501.0
-_ADVANCES: Final = tuple(float(width) / _CAP for width in _WIDTHS.split())
-"""Advance of the ASCII characters 32 to 126 of pygame's own font in cap heights (measured at 1000 px)."""
+_ADVANCES: Final = {
+    chr(first + index): float(width) / _CAP
+    for first, widths in ((32, _WIDTHS), (160, _LATIN_WIDTHS))
+    for index, width in enumerate(widths.split())
+}
+"""Advance of the characters 32 to 126 and 160 to 255 of pygame's own font in cap heights (measured at 1000 px)."""
 
 
 def text_width_px(text: str, cap_px: float) -> float:
-    """Return the width of `text` in pixels; only printable ASCII has a width, so nothing else may be drawn."""
-    return sum(_ADVANCES[ord(character) - 32] for character in text) * cap_px
+    """Return the width of `text` in pixels; only printable Latin-1 has a width, so nothing else may be drawn."""
+    return sum(_ADVANCES[character] for character in text) * cap_px
 
 
 def fit_cap_px(text: str, cap_px: float, width_px: float) -> float:

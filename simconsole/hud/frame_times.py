@@ -4,16 +4,27 @@ from collections import deque
 from statistics import median
 from typing import Final
 
+from simconsole.hud.language import number, say
+from simconsole.profiles.view import ENGLISH, LanguageProfile
+
 KEPT: Final = 240
 TOLD_S: Final = 0.5
 """The words change this often: digits that change every frame cannot be read."""
 
 
+RATE: Final = "{rate} frames/s"
+FRAME: Final = "frame {median} ms, 99 %: {late} ms"
+DRAWING: Final = "drawing {median} ms, 99 %: {late} ms"
+DATA_AGE: Final = "data {age} ms old"
+NO_DATA_YET: Final = "no data"
+
+
 class FrameTimes:
     """Remembers the newest frames."""
 
-    def __init__(self, drawer: str) -> None:
+    def __init__(self, drawer: str, language: LanguageProfile = ENGLISH) -> None:
         """Take the name of what draws."""
+        self._language = language
         self._drawer = "".join(sign if " " <= sign <= "~" else "?" for sign in drawer)
         self._frames: deque[tuple[float, float]] = deque(maxlen=KEPT)
         self._since_told_s = TOLD_S
@@ -33,10 +44,16 @@ class FrameTimes:
         late = int(0.99 * (len(frames) - 1))
         whole_s = sum(frames)
         self._lines = (
-            f"{len(frames) / whole_s if whole_s > 0.0 else 0.0:.0f} frames/s",
-            f"frame {1e3 * median(frames):.1f} ms, 99 %: {1e3 * frames[late]:.1f} ms",
-            f"drawing {1e3 * median(drawing):.1f} ms, 99 %: {1e3 * drawing[late]:.1f} ms",
-            "no data" if age_s is None else f"data {1e3 * age_s:.0f} ms old",
+            say(self._language, RATE, rate=f"{len(frames) / whole_s if whole_s > 0.0 else 0.0:.0f}"),
+            self._line(FRAME, median(frames), frames[late]),
+            self._line(DRAWING, median(drawing), drawing[late]),
+            say(self._language, NO_DATA_YET)
+            if age_s is None
+            else say(self._language, DATA_AGE, age=f"{1e3 * age_s:.0f}"),
             self._drawer,
         )
         return self._lines
+
+    def _line(self, phrase: str, median_s: float, late_s: float) -> str:
+        middle, late = (number(self._language, 1e3 * time_s, 1) for time_s in (median_s, late_s))
+        return say(self._language, phrase, median=middle, late=late)

@@ -3,7 +3,9 @@
 from enum import StrEnum
 from typing import Final
 
+from simconsole.hud.language import say
 from simconsole.profiles.device import Buttons, CockpitProfile
+from simconsole.profiles.view import ENGLISH, LanguageProfile
 from simconsole.values.key_codes import Key
 
 KEY_CODES: Final[dict[str, Key]] = {
@@ -48,14 +50,14 @@ class WindowKey(StrEnum):
     FULL_SCREEN = "K_F11"
 
 
-_WINDOW_WORDS: Final = {
+WINDOW_WORDS: Final = {
     WindowKey.HELP: "this help",
     WindowKey.FRAME_TIMES: "frame times",
     WindowKey.NEXT_DISPLAY: "next display",
     WindowKey.VSYNC: "vsync on, off",
     WindowKey.FULL_SCREEN: "full screen",
 }
-_KEY_WORDS: Final = {
+KEY_WORDS: Final = {
     Key.STEER_LEFT: "steer left",
     Key.STEER_RIGHT: "steer right",
     Key.THROTTLE: "throttle",
@@ -64,7 +66,7 @@ _KEY_WORDS: Final = {
     Key.HANDBRAKE: "handbrake",
     Key.END: "end the drive",
 }
-_BUTTON_WORDS: Final = {
+BUTTON_WORDS: Final = {
     "shift_up": "gear up",
     "shift_down": "gear down",
     "autonomous": "let the autopilot drive",
@@ -88,31 +90,40 @@ _BUTTON_KEYS: Final = {"shift_up": Key.GEAR_UP, "shift_down": Key.GEAR_DOWN}
 
 def key_label(key: Key) -> str:
     """Return the label of the first key that means `key`, as a driver finds it on the keyboard; empty without one."""
-    return next((name.removeprefix("K_").capitalize() for name, meaning in KEY_CODES.items() if meaning is key), "")
+    return next((key_name(code) for code, meaning in KEY_CODES.items() if meaning is key), "")
 
 
-def help_rows(cockpit: CockpitProfile, *, by_keyboard: bool) -> tuple[tuple[str, str], ...]:
+def key_name(code: str) -> str:
+    """Return what stands on a key, by the name of pygame's constant."""
+    return code.removeprefix("K_").capitalize()
+
+
+def help_rows(
+    cockpit: CockpitProfile, *, by_keyboard: bool, language: LanguageProfile = ENGLISH
+) -> tuple[tuple[str, str], ...]:
     """Return what each key or button does: pairs of its label and the words for it.
 
     Args:
         cockpit: What its buttons are called.
         by_keyboard: Whether the window's keys drive; else only those of the window itself are told.
+        language: The driver's.
     """
     rows: list[tuple[str, str]] = []
     if by_keyboard:
-        rows += [(_labels(key), words) for key, words in _KEY_WORDS.items() if key is not Key.END]
+        rows += [(_labels(key, language), words) for key, words in KEY_WORDS.items() if key is not Key.END]
     for action in Buttons.__struct_fields__:
         if by_keyboard:
             key = _BUTTON_KEYS.get(action) or Key.__members__.get(action.upper())
-            label = "" if key is None else _labels(key)
+            label = "" if key is None else _labels(key, language)
         else:
             label = cockpit.button_label(action)
         if label:
-            rows.append((label, _BUTTON_WORDS[action]))
-    rows.append((_labels(Key.END), _KEY_WORDS[Key.END]))
-    return (*rows, *((key.removeprefix("K_"), words) for key, words in _WINDOW_WORDS.items()))
+            rows.append((label, BUTTON_WORDS[action]))
+    rows.append((_labels(Key.END, language), KEY_WORDS[Key.END]))
+    rows += [(key.removeprefix("K_"), words) for key, words in WINDOW_WORDS.items()]
+    return tuple((label, say(language, words)) for label, words in rows)
 
 
-def _labels(key: Key) -> str:
+def _labels(key: Key, language: LanguageProfile) -> str:
     """Return the labels of all keys of one meaning."""
-    return ", ".join(name.removeprefix("K_").capitalize() for name, meaning in KEY_CODES.items() if meaning is key)
+    return ", ".join(say(language, key_name(code)) for code, meaning in KEY_CODES.items() if meaning is key)

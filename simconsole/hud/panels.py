@@ -18,11 +18,12 @@ from simconsole.hud.draw import (
     Text,
     around,
     fit_cap_px,
+    text_width_px,
 )
 from simconsole.hud.screen import DRIVING_ARCMIN, SECONDARY_ARCMIN
 from simconsole.hud.shapes import exclamation
 from simconsole.hud.view import HudView
-from simconsole.hud.words import CONSOLE, NOBODY
+from simconsole.hud.words import AUTOPILOT, CONSOLE, NOBODY, YOU
 from simconsole.values.labels import LINK_CONNECTING, LINK_DOWN, LINK_LOST, LINK_NOBODY, LINK_RETRYING, validity_label
 from simconsole.values.signals import Validity
 from simconsole.values.validity import is_trusted
@@ -32,6 +33,31 @@ Anchor = Literal["l", "c", "r"]
 _LINK_LEVELS: Final = {
     LINK_NOBODY: "plain", LINK_LOST: "warn", LINK_CONNECTING: "warn", LINK_RETRYING: "warn", LINK_DOWN: "warn",
 }  # fmt: skip
+PEDALS: Final = "PEDALS"
+STEERING: Final = "STEERING"
+CLUTCH: Final = "CLUTCH"
+BRAKE: Final = "BRAKE"
+GAS: Final = "GAS"
+LEFT: Final = "{degrees} deg L"
+RIGHT: Final = "{degrees} deg R"
+STRAIGHT: Final = "{degrees} deg"
+LINK_TITLE: Final = "AUTOPILOT LINK"
+LINK_ON: Final = "AUTOPILOT ON {commander}"
+LIVE: Final = "LIVE"
+SILENT: Final = "SILENT"
+NONE: Final = "NONE"
+NO_COMMAND: Final = "no command yet"
+AGE: Final = "{age} ms old"
+TOO_OLD: Final = "over 10 s old"
+HAND_BRAKE: Final = "HAND BRAKE"
+LAMPS: Final = ("WHEEL", PEDALS, "SHIFTER", "FORCE", "ENGINE", HAND_BRAKE, "CAN", "LINK")
+RUNNING: Final = "running"
+OFF: Final = "off"
+ON: Final = "on"
+DOWN: Final = "down"
+LET_GO: Final = "let go"
+CLIENTS: Final = "{count} clients"
+ONE_CLIENT: Final = "1 client"
 _FORCE_LEVELS: Final = {"none": "plain", "on": "good", "eased": "plain", "limit": "warn", "lost": "warn"}
 
 
@@ -54,25 +80,27 @@ def _panel(box: Box, title: str) -> list[DrawItem]:
 
 def pedals(view: HudView, box: Box) -> list[DrawItem]:
     """Return the pedals in their order on the floor: the bar is what the car gets, the mark what the foot does."""
-    items = _panel(box, "PEDALS")
+    items = _panel(box, view.say(PEDALS))
     rows = (
-        ("CLUTCH", view.clutch, view.driver_clutch),
-        ("BRAKE", view.brake, view.driver_brake),
-        ("GAS", view.throttle, view.driver_throttle),
+        (CLUTCH, view.clutch, view.driver_clutch),
+        (BRAKE, view.brake, view.driver_brake),
+        (GAS, view.throttle, view.driver_throttle),
     )
+    widest = max((view.say(name) for name, _, _ in rows), key=lambda name: text_width_px(name, 1.0))
     inside = Box(box.x + 0.06 * box.w, box.y + 0.13 * box.h, 0.88 * box.w, 0.82 * box.h)
     for index, (name, value, foot) in enumerate(rows):
-        items += _pedal(name, value, foot, view.stale, inside.column(index / 3.0, (index + 1) / 3.0))
+        column = inside.column(index / 3.0, (index + 1) / 3.0)
+        cap = fit_cap_px(widest, 0.036 * column.h, 0.9 * column.w)
+        items += _pedal(view, name, value, foot, cap, column)
     return items
 
 
-def _pedal(name: str, value: float, foot: float, stale: bool, box: Box) -> list[DrawItem]:
-    cap = fit_cap_px("CLUTCH", 0.036 * box.h, 0.86 * box.w)
+def _pedal(view: HudView, name: str, value: float, foot: float, cap: float, box: Box) -> list[DrawItem]:
     width = 0.42 * box.w
     slot = Box(box.cx - 0.5 * width, box.y + 0.13 * box.h, width, 0.74 * box.h)
-    number = "--" if stale else f"{100.0 * value:.0f}"
+    number = "--" if view.stale else f"{100.0 * value:.0f}"
     role = f"pedal.{name.lower()}"
-    ink = MUTED if stale else TEXT
+    ink = MUTED if view.stale else TEXT
     items: list[DrawItem] = [
         Text(
             box.cx,
@@ -88,7 +116,7 @@ def _pedal(name: str, value: float, foot: float, stale: bool, box: Box) -> list[
         Text(
             box.cx,
             box.bottom - 0.045 * box.h,
-            name,
+            view.say(name),
             cap_px=cap,
             colour=MUTED,
             role=f"{role}.name",
@@ -96,7 +124,7 @@ def _pedal(name: str, value: float, foot: float, stale: bool, box: Box) -> list[
             arcmin=SECONDARY_ARCMIN,
         ),
     ]
-    if stale:
+    if view.stale:
         return items
     height = min(1.0, max(0.0, value)) * slot.h
     if height >= 1.0:
@@ -109,7 +137,7 @@ def _pedal(name: str, value: float, foot: float, stale: bool, box: Box) -> list[
 
 def steering(view: HudView, box: Box) -> list[DrawItem]:
     """Return who steers, how far, and the link to the autopilot."""
-    items = _panel(box, "STEERING")
+    items = _panel(box, view.say(STEERING))
     inside = Box(box.x + 0.08 * box.w, box.y, 0.84 * box.w, box.h)
     items += _angle(view, inside.row(0.12, 0.40))
     items += share(view, inside.row(0.42, 0.66))
@@ -117,12 +145,24 @@ def steering(view: HudView, box: Box) -> list[DrawItem]:
     return [*items, Rect(line, LINE, "panel.line"), *_link(view, inside.row(0.70, 0.96))]
 
 
+def who_steers(view: HudView, box: Box) -> list[DrawItem]:
+    """Return who steers and the link to the autopilot, as large as goes."""
+    inside = Box(box.x + 0.06 * box.w, box.y, 0.88 * box.w, box.h)
+    line = Rect(Box(inside.x, box.y + 0.5 * box.h, inside.w, 2.0), LINE, "panel.line")
+    return [
+        Rect(box, PANEL, "panel", 0.04 * box.w),
+        *share(view, inside.row(0.05, 0.47)),
+        line,
+        *_link(view, inside.row(0.52, 0.96)),
+    ]
+
+
 def _angle(view: HudView, box: Box) -> list[DrawItem]:
     """Return the angle at the hand wheel: number and bar are what the car does, the mark is what the hands do."""
     degrees, lock_deg = view.hand_wheel_deg, view.settings.hand_wheel_lock_deg
-    side = "" if abs(degrees) < 0.5 else (" L" if degrees > 0.0 else " R")
-    text = "--" if view.stale else f"{abs(degrees):.0f} deg{side}"
-    cap = fit_cap_px("000 deg R", 0.24 * box.h, 0.88 * box.w)
+    phrase = STRAIGHT if abs(degrees) < 0.5 else (LEFT if degrees > 0.0 else RIGHT)
+    text = "--" if view.stale else view.say(phrase, degrees=f"{abs(degrees):.0f}")
+    cap = fit_cap_px(view.say(RIGHT, degrees="000"), 0.24 * box.h, 0.88 * box.w)
     bar = Box(box.x, box.y + 0.62 * box.h, box.w, 0.16 * box.h)
     items: list[DrawItem] = [
         Text(
@@ -163,14 +203,14 @@ def share(view: HudView, box: Box) -> list[DrawItem]:
     bar = Box(box.x, box.y + 0.58 * box.h, box.w, 0.2 * box.h)
     you = "--" if view.stale or nobody else f"{100.0 * (1.0 - remote):.0f} %"
     other = "--" if view.stale or nobody else f"{100.0 * remote:.0f} %"
-    cap = fit_cap_px("AUTOPILOT", 0.12 * box.h, 0.58 * box.w)
+    cap = fit_cap_px(view.say(AUTOPILOT), 0.12 * box.h, 0.58 * box.w)
     top, below = box.y + 0.14 * box.h, box.y + 0.38 * box.h
     items = [
-        _share_text(box.x, top, "YOU", "share.label", "l", cap),
+        _share_text(box.x, top, view.say(YOU), "share.label", "l", cap),
         _share_text(box.x, below, you, "share.you", "l", cap),
     ]
     if view.other_side and not view.stale:
-        items.append(_share_text(box.right, top, view.other_side, "share.label", "r", cap))
+        items.append(_share_text(box.right, top, view.say(view.other_side), "share.label", "r", cap))
         items.append(_share_text(box.right, below, other, "share.other", "r", cap))
     items.append(Rect(bar, LINE, "share.slot", 0.3 * bar.h))
     if view.stale or nobody:
@@ -191,25 +231,28 @@ def _share_text(x: float, y: float, text: str, role: str, anchor: Anchor, cap: f
 
 
 def _link(view: HudView, box: Box) -> list[DrawItem]:
-    text, age, colour = _link_label(view)
+    state, age, colour = _link_label(view)
+    text = view.say(state)
     side = 0.2 * box.h
     sign = Box(box.x, box.y + 0.48 * box.h - 0.5 * side, side, side)
-    cap = fit_cap_px("SILENT", 0.17 * box.h, box.w - 1.6 * side)
+    cap = fit_cap_px(view.say(SILENT), 0.17 * box.h, box.w - 1.6 * side)
     x = sign.right + 0.6 * side
-    name = "AUTOPILOT LINK" if view.stale or view.commander == "none" else f"AUTOPILOT ON {view.commander}"
+    is_commanded = not view.stale and view.commander != "none"
+    name = view.say(LINK_ON, commander=view.commander) if is_commanded else view.say(LINK_TITLE)
+    widest = view.say(LINK_ON, commander="ROS")
     title = Text(
-        box.x, box.y + 0.14 * box.h, name, cap_px=fit_cap_px("AUTOPILOT ON ROS", 0.11 * box.h, box.w),
+        box.x, box.y + 0.14 * box.h, name, cap_px=fit_cap_px(widest, 0.11 * box.h, box.w),
         colour=MUTED, role="link.title", anchor="l", arcmin=SECONDARY_ARCMIN,
     )  # fmt: skip
     return [
         title,
-        *_link_shape(text, sign, colour),
+        *_link_shape(state, sign, colour),
         Text(
             x,
             box.y + 0.48 * box.h,
             text,
             cap_px=cap,
-            colour=TEXT if text != "--" else MUTED,
+            colour=TEXT if state != "--" else MUTED,
             role="link",
             anchor="l",
             arcmin=DRIVING_ARCMIN,
@@ -231,15 +274,15 @@ def _link_label(view: HudView) -> tuple[str, str, Colour]:
     if view.stale:
         return "--", "--", MUTED
     if view.link_age_s is None:
-        return "NONE", "no command yet", MUTED
-    shown = f"{1000.0 * view.link_age_s:.0f} ms old" if view.link_age_s < 10.0 else "over 10 s old"
-    return ("SILENT", shown, CAUTION) if view.link_age_s > view.settings.link_stale_s else ("LIVE", shown, ACTIVE)
+        return NONE, view.say(NO_COMMAND), MUTED
+    age = view.say(AGE, age=f"{1000.0 * view.link_age_s:.0f}") if view.link_age_s < 10.0 else view.say(TOO_OLD)
+    return (SILENT, age, CAUTION) if view.link_age_s > view.settings.link_stale_s else (LIVE, age, ACTIVE)
 
 
-def _link_shape(text: str, box: Box, colour: Colour) -> list[DrawItem]:
-    if text == "SILENT":
+def _link_shape(state: str, box: Box, colour: Colour) -> list[DrawItem]:
+    if state == SILENT:
         return exclamation(box, colour, PANEL, "link.shape")
-    inner = 0.0 if text == "LIVE" else 0.36 * box.w
+    inner = 0.0 if state == LIVE else 0.36 * box.w
     return [
         Arc(
             box.cx,
@@ -265,28 +308,35 @@ class Lamp(NamedTuple):
 def lamps(view: HudView) -> list[Lamp]:
     """Return the three devices, the wheel's motor, engine, hand brake, and CAN and bridge if any."""
     shifter = (view.lever_label, "warn") if view.lever_label else _device(view.shifter_validity)
-    found = [
-        Lamp("WHEEL", *_device(view.wheel_validity)),
-        Lamp("PEDALS", *_device(view.pedals_validity)),
-        Lamp("SHIFTER", *shifter),
-        Lamp("FORCE", view.force, _FORCE_LEVELS[view.force]),
-        Lamp("ENGINE", "running", "good") if view.engine_running else Lamp("ENGINE", "off", "plain"),
-        Lamp("HAND BRAKE", *_hand_brake(view)),
+    states = [
+        _device(view.wheel_validity),
+        _device(view.pedals_validity),
+        shifter,
+        (view.force, _FORCE_LEVELS[view.force]),
+        (RUNNING, "good") if view.engine_running else (OFF, "plain"),
+        _hand_brake(view),
+        None if view.can_up is None else ((ON, "good") if view.can_up else (DOWN, "warn")),
+        None if view.link is None else (_link_words(view), _LINK_LEVELS.get(view.link, "good")),
     ]
-    if view.can_up is not None:
-        found.append(Lamp("CAN", "on", "good") if view.can_up else Lamp("CAN", "down", "warn"))
-    if view.link is not None:
-        found.append(Lamp("LINK", view.link, _LINK_LEVELS.get(view.link, "good")))
-    return found
+    return [Lamp(name, *state) for name, state in zip(LAMPS, states, strict=True) if state is not None]
 
 
-def status(view: HudView, box: Box) -> list[DrawItem]:
-    """Return the strip of lamps."""
+def _link_words(view: HudView) -> str:
+    """Return how the bridge stands; its worker counts the clients in English."""
+    assert view.link is not None
+    count, _, noun = view.link.partition(" ")
+    return view.say(CLIENTS, count=count) if noun == "clients" else view.link
+
+
+def status(view: HudView, box: Box, most: int = len(LAMPS)) -> list[DrawItem]:
+    """Return the strip of lamps, `most` of them: first those that are not as they should be."""
     cells = lamps(view)
+    if len(cells) > most:
+        cells = sorted(cells, key=lambda lamp: lamp.level != "warn")[:most]
     items: list[DrawItem] = [Rect(box, PANEL, "status", 0.12 * box.h)]
     for index, lamp in enumerate(cells):
         cell = box.inset(0.01 * box.w).column(index / len(cells), (index + 1) / len(cells))
-        items += lamp_cell(lamp, view.stale, cell, box)
+        items += lamp_cell(lamp, view, cell, box)
     return items
 
 
@@ -304,15 +354,17 @@ def _hand_brake(view: HudView) -> tuple[str, str]:
     if view.handbrake_validity in (Validity.STALE, Validity.LOST):
         return _device(view.handbrake_validity)
     if view.handbrake_validity == Validity.UNKNOWN and is_trusted(view.wheel_validity):
-        return "let go", "warn"
-    return ("on", "warn") if view.handbrake > 0.05 else ("off", "plain")
+        return LET_GO, "warn"
+    return (ON, "warn") if view.handbrake > 0.05 else (OFF, "plain")
 
 
-def lamp_cell(lamp: Lamp, stale: bool, cell: Box, box: Box) -> list[DrawItem]:
+def lamp_cell(lamp: Lamp, view: HudView, cell: Box, box: Box) -> list[DrawItem]:
     """Return one lamp in its cell of a strip that is as high as `box`."""
-    name, text, level = (lamp.name, "--", "plain") if stale else lamp
-    role = f"status.{name.lower().replace(' ', '_')}"
-    label = fit_cap_px("HAND BRAKE", 0.14 * box.h, 0.92 * cell.w)
+    role = f"status.{lamp.name.lower().replace(' ', '_')}"
+    name, text, level = view.say(lamp.name), view.say(lamp.text), lamp.level
+    if view.stale:
+        text, level = "--", "plain"
+    label = fit_cap_px(max(name, view.say(HAND_BRAKE), key=len), 0.14 * box.h, 0.92 * cell.w)
     side = 0.22 * box.h
     x = cell.x + 0.04 * cell.w
     items: list[DrawItem] = [

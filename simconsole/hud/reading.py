@@ -1,27 +1,29 @@
 """What the driver reads, as values for a display of another program: the fields of simconsole_msgs/Hud."""
 
 import math
-from typing import Any
+from typing import Any, Final
 
 from simconsole.hud.banner import ALERT_LABELS, Alert, alert_of
 from simconsole.hud.view import HudMemory, HudSettings, view
 from simconsole.values.state_vector import Snapshot
 from simconsole.values.units import KMH_PER_MPS
 
+NO_TURN_M: Final = -1.0
+
 
 class HudReading:
     """Reads tick after tick; what a display remembers from one to the next is remembered here."""
 
-    def __init__(self, settings: HudSettings, limit_kmh: float) -> None:
-        """Take the rules of the drive, and the limit that holds all along the route, 0 for none."""
+    def __init__(self, settings: HudSettings) -> None:
+        """Take the rules of the drive."""
         self._settings = settings
-        self._limit_mps = limit_kmh / KMH_PER_MPS
         self._memory = HudMemory()
 
     def __call__(self, snapshot: Snapshot) -> dict[str, Any]:
         """Return the fields of a message, its header left out."""
         shown, self._memory = view(snapshot, 0.0, self._memory, self._settings)
         alert = alert_of(shown)
+        turn = shown.ahead
         vehicle, arbitration = snapshot.vehicle, snapshot.arbitration
         headline = ALERT_LABELS[alert][0] if alert in ALERT_LABELS else shown.refusal_label or shown.notice_label
         return {
@@ -48,6 +50,10 @@ class HudReading:
             "hand_wheel": math.radians(shown.hand_wheel_deg),
             "turn_indicators": int(shown.turn_indicators),
             "hazard_lights": shown.hazard_lights > 0.0,
-            "speed_limit": self._limit_mps,
+            "speed_limit": shown.limit_kmh / KMH_PER_MPS,
+            "turn_distance": NO_TURN_M if turn is None else turn.distance_m,
+            "turn_angle": 0.0 if turn is None else turn.angle_rad,
+            "turn_exit": 0 if turn is None else turn.exit,
+            "turn_ends": turn is not None and turn.is_end,
             "distance": shown.distance_m,
         }

@@ -2,7 +2,8 @@
 
 from typing import Final
 
-from simconsole.hud.dial import indicator_arrows, is_over_red, limit_sign
+from simconsole.hud.banner import DISTANCE, TIME
+from simconsole.hud.dial import AUTO, KMH, NO_DATA, UP, indicator_arrows, is_over_red, limit_sign
 from simconsole.hud.draw import CAUTION, LINE, MUTED, PANEL, TEXT, WARNING_LINE, Box, DrawItem, Rect, Text, fit_cap_px
 from simconsole.hud.panels import Lamp, lamp_cell, lamps, share
 from simconsole.hud.screen import DRIVING_ARCMIN, SECONDARY_ARCMIN, SPEED_ARCMIN
@@ -10,6 +11,7 @@ from simconsole.hud.view import HudView
 
 HEIGHT_ARCMIN: Final = 150.0
 """Height of the strip at which each of its texts has the size that it needs (`check_screen`)."""
+RPM: Final = "{rpm} rpm"
 _SHOWN_LAMPS: Final = 2
 
 
@@ -30,8 +32,9 @@ def strip(view: HudView, box: Box) -> list[DrawItem]:
 
 def _speed(view: HudView, box: Box) -> list[DrawItem]:
     if view.stale:
-        cap = fit_cap_px("NO DATA", 0.3 * box.h, box.w)
-        return [Text(box.cx, box.cy, "NO DATA", cap_px=cap, colour=MUTED, role="speed", arcmin=DRIVING_ARCMIN)]
+        text = view.say(NO_DATA)
+        cap = fit_cap_px(text, 0.3 * box.h, box.w)
+        return [Text(box.cx, box.cy, text, cap_px=cap, colour=MUTED, role="speed", arcmin=DRIVING_ARCMIN)]
     cap = 0.50 * box.h
     return [
         Text(
@@ -39,7 +42,7 @@ def _speed(view: HudView, box: Box) -> list[DrawItem]:
             arcmin=SPEED_ARCMIN,
         ),
         Text(
-            box.cx, box.y + 0.85 * box.h, "km/h", cap_px=0.165 * box.h, colour=MUTED, role="speed.unit",
+            box.cx, box.y + 0.85 * box.h, view.say(KMH), cap_px=0.165 * box.h, colour=MUTED, role="speed.unit",
             arcmin=DRIVING_ARCMIN,
         ),
         *indicator_arrows(view, box.cx, box.y + 0.36 * box.h, 0.42 * box.w, 0.14 * box.h),
@@ -55,12 +58,13 @@ def _gear(view: HudView, box: Box) -> list[DrawItem]:
         Text(frame.cx, frame.cy, gear, cap_px=0.56 * side, colour=ink, role="gear", arcmin=DRIVING_ARCMIN),
     ]
     if view.automatic and not view.stale:
-        cap = fit_cap_px("AUTO", 0.14 * box.h, box.w)
+        text = view.say(AUTO)
+        cap = fit_cap_px(text, 0.14 * box.h, box.w)
         items.append(
             Text(
                 box.cx,
                 box.y + 0.85 * box.h,
-                "AUTO",
+                text,
                 cap_px=cap,
                 colour=MUTED,
                 role="gear.automatic",
@@ -68,9 +72,10 @@ def _gear(view: HudView, box: Box) -> list[DrawItem]:
             )
         )
     elif is_over_red(view) and not view.stale:
-        cap = fit_cap_px("UP", 0.165 * box.h, box.w)
+        text = view.say(UP)
+        cap = fit_cap_px(text, 0.165 * box.h, box.w)
         items.append(
-            Text(box.cx, box.y + 0.85 * box.h, "UP", cap_px=cap, colour=CAUTION, role="shift", arcmin=DRIVING_ARCMIN)
+            Text(box.cx, box.y + 0.85 * box.h, text, cap_px=cap, colour=CAUTION, role="shift", arcmin=DRIVING_ARCMIN)
         )
     return items
 
@@ -78,12 +83,13 @@ def _gear(view: HudView, box: Box) -> list[DrawItem]:
 def _engine(view: HudView, box: Box) -> list[DrawItem]:
     """Return engine speed as number and bar; a line marks where it becomes too fast."""
     settings = view.settings
-    text = "--" if view.stale else f"{50.0 * round(view.rpm / 50.0):.0f}"
+    turning = "--" if view.stale else f"{50.0 * round(view.rpm / 50.0):.0f}"
+    text = view.say(RPM, rpm=turning)
     bar = Box(box.x, box.y + 0.62 * box.h, box.w, 0.2 * box.h)
-    cap = fit_cap_px("0000 rpm", 0.2 * box.h, box.w)
+    cap = fit_cap_px(view.say(RPM, rpm="0000"), 0.2 * box.h, box.w)
     items: list[DrawItem] = [
         Text(
-            box.cx, box.y + 0.3 * box.h, f"{text} rpm", cap_px=cap, colour=MUTED if view.stale else TEXT, role="rpm",
+            box.cx, box.y + 0.3 * box.h, text, cap_px=cap, colour=MUTED if view.stale else TEXT, role="rpm",
             arcmin=DRIVING_ARCMIN,
         ),
         Rect(bar, LINE, "rpm.slot", 0.3 * bar.h),
@@ -105,10 +111,10 @@ def _lamps(view: HudView, box: Box) -> list[DrawItem]:
     if not bad or view.stale:
         seconds = int(view.t_s)
         bad = [
-            Lamp("TIME", f"{seconds // 60:02d}:{seconds % 60:02d}", "plain"),
-            Lamp("DISTANCE", f"{0.001 * view.distance_m:.1f} km", "plain"),
+            Lamp(TIME, f"{seconds // 60:02d}:{seconds % 60:02d}", "plain"),
+            Lamp(DISTANCE, f"{view.number(0.001 * view.distance_m, 1)} km", "plain"),
         ]
     items: list[DrawItem] = []
     for index, lamp in enumerate(bad):
-        items += lamp_cell(lamp, view.stale, box.column(index / _SHOWN_LAMPS, (index + 1) / _SHOWN_LAMPS), box)
+        items += lamp_cell(lamp, view, box.column(index / _SHOWN_LAMPS, (index + 1) / _SHOWN_LAMPS), box)
     return items

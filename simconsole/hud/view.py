@@ -2,12 +2,14 @@
 
 from typing import Final, NamedTuple
 
+from simconsole.hud.guidance import Ahead, Guidance, ahead
 from simconsole.hud.key_names import help_rows, key_label
+from simconsole.hud.language import number, say
 from simconsole.hud.words import next_step, other_side
 from simconsole.profiles.control import ControlProfile
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.vehicle import CarProfile, VehicleProfile
-from simconsole.profiles.view import HudProfile
+from simconsole.profiles.view import ENGLISH, HudProfile, LanguageProfile
 from simconsole.values.key_codes import Key
 from simconsole.values.labels import commander_label, gear_label, is_eased, mode_label, notice_label, reason_label
 from simconsole.values.layout import read
@@ -20,8 +22,15 @@ STALE_S: Final = 0.5
 """Older snapshots are not shown: NO DATA."""
 SPEED_HYSTERESIS_KMH: Final = 0.5
 """The shown integer follows only when the speed has left it by this much more than rounding (rule 11)."""
+STANDING_KMH: Final = 0.1
+"""Up to this speed a car stands, for all to see: 0 is shown without hysteresis."""
 SPEED_PERIOD_S: Final = 0.2
 """The speed's digits change at most this often (rule 11)."""
+FORCES: Final = ("none", "on", "eased", "limit", "lost")
+"""Signs of the wheel's motor."""
+PAUSED: Final = "PAUSED"
+TWO_GEARS: Final = "two gears"
+NOT_NOW: Final = "not now"
 CLIP_SHOWN_S: Final = 0.3
 """How long a cut-off force is shown: one tick of it could not be seen."""
 
@@ -41,6 +50,8 @@ class HudSettings(NamedTuple):
     reset_button: str = ""
     limit_kmh: float = 0.0  # speed limit of a road without lanes of its own; 0: none, or it changes on the way
     help_rows: tuple[tuple[str, str], ...] = ()  # what each key or button does (`key_names.help_rows`)
+    language: LanguageProfile = ENGLISH
+    guidance: Guidance | None = None  # the route to follow; None: there is none
 
 
 class HudMemory(NamedTuple):
@@ -51,17 +62,22 @@ class HudMemory(NamedTuple):
     motor_seen: bool = False  # the wheel has had a motor in this drive
     clipped_s: float = -1e9  # when force was last cut off
     stop_reason: float | None = None  # why the car has come to its stop: STOPPED itself only says that it stands
+    route_m: float | None = None  # where along the route the vehicle was; None: beside it
     eased: bool = False  # the last picture showed that the wheel gives a share of the car's torque only
 
 
 class HudView(NamedTuple):
-    """One picture's content. Pedals 0 to 1; `driver_*` is the person, the others what the car does."""
+    """One picture's content. Pedals 0 to 1; `driver_*` is the person, the others what the car does.
+
+    Labels are in the driver's language already; what else is a text names a state, and is said where it is drawn.
+    """
 
     settings: HudSettings = HudSettings()
     t_s: float = 0.0
     stale: bool = False
     shown_kmh: int = 0
     limit_kmh: int = 0  # speed limit here; 0: none
+    ahead: Ahead | None = None  # what comes next on the route; None: no route, or beside it
     rpm: float = 0.0
     engine_running: bool = False
     gear: str = "N"
@@ -96,9 +112,17 @@ class HudView(NamedTuple):
     handbrake_validity: float = 0.0
     lever_label: str = ""  # what is wrong with the gear that the lever shows
     distance_m: float = 0.0
-    force: str = "none"  # of the wheel's motor: none, on, limit (more torque is asked for than it has), lost
+    force: str = "none"  # of the wheel's motor, of FORCES; limit: more torque is asked for than it has
     can_up: bool | None = None  # None: this drive has no CAN bus
     link: str | None = None  # how the rosbridge link stands (simconsole.values.labels); None: this drive has no bridge
+
+    def say(self, phrase: str, **parts: str) -> str:
+        """Return a phrase in the driver's language."""
+        return say(self.settings.language, phrase, **parts)
+
+    def number(self, value: float, digits: int) -> str:
+        """Return a number as the driver's language writes it."""
+        return number(self.settings.language, value, digits)
 
 
 def shown_speed(speed_mps: float, t_s: float, memory: HudMemory) -> tuple[int, float]:
@@ -106,13 +130,20 @@ def shown_speed(speed_mps: float, t_s: float, memory: HudMemory) -> tuple[int, f
     kmh = abs(speed_mps) * KMH_PER_MPS
     if not 0.0 <= t_s - memory.shown_s < 1e8:  # the first picture, or a drive that started anew
         return int(kmh + 0.5), t_s
-    if t_s - memory.shown_s < SPEED_PERIOD_S or abs(kmh - memory.shown_kmh) < 0.5 + SPEED_HYSTERESIS_KMH:
+    steady = kmh > STANDING_KMH and abs(kmh - memory.shown_kmh) < 0.5 + SPEED_HYSTERESIS_KMH
+    if steady or t_s - memory.shown_s < SPEED_PERIOD_S:
         return memory.shown_kmh, memory.shown_s
     return int(kmh + 0.5), t_s
 
 
 def settings_of(
-    hud: HudProfile, control: ControlProfile, cockpit: CockpitProfile, vehicle: VehicleProfile, *, by_keyboard: bool
+    hud: HudProfile,
+    control: ControlProfile,
+    cockpit: CockpitProfile,
+    vehicle: VehicleProfile,
+    *,
+    by_keyboard: bool,
+    language: LanguageProfile = ENGLISH,
 ) -> HudSettings:
     """Return the cluster's settings; the times are the arbitration's own, so the countdown ends when it acts.
 
@@ -122,7 +153,12 @@ def settings_of(
         cockpit: What the buttons are called.
         vehicle: Its steering and its gears.
         by_keyboard: Whether the window's keys drive.
+        language: The driver's.
     """
+
+    def button(key: Key, role: str) -> str:
+        return say(language, key_label(key)) if by_keyboard else cockpit.button_label(role)
+
     ratio = vehicle.steering.ratio if isinstance(vehicle, CarProfile) else vehicle.steering_ratio
     lock_deg = vehicle.steering.max_road_wheel_deg if isinstance(vehicle, CarProfile) else vehicle.max_road_wheel_deg
     return HudSettings(
@@ -134,9 +170,10 @@ def settings_of(
         hand_wheel_per_road_wheel=ratio,
         hand_wheel_lock_deg=ratio * lock_deg,
         top_gear=len(vehicle.gearbox.forward) if isinstance(vehicle, CarProfile) else 0,
-        manual_button=key_label(Key.MANUAL) if by_keyboard else cockpit.button_label("manual"),
-        reset_button=key_label(Key.RESET) if by_keyboard else cockpit.button_label("reset"),
-        help_rows=help_rows(cockpit, by_keyboard=by_keyboard),
+        manual_button=button(Key.MANUAL, "manual"),
+        reset_button=button(Key.RESET, "reset"),
+        help_rows=help_rows(cockpit, by_keyboard=by_keyboard, language=language),
+        language=language,
     )
 
 
@@ -172,11 +209,12 @@ def view(
         can_up: whether the CAN bus is up; None without one.
         link: how the rosbridge link stands; None without a bridge.
     """
-    vehicle, command, driver = snapshot.vehicle, snapshot.command, snapshot.driver
+    vehicle, command, driver, language = snapshot.vehicle, snapshot.command, snapshot.driver, settings.language
     arbitration = snapshot.arbitration
     kmh, shown_s = shown_speed(vehicle.vx_mps, snapshot.t_s, memory)
     force, motor_seen, clipped_s = force_label(snapshot, memory)
     stop_reason = _stop_reason(arbitration.mode, arbitration.reason, memory)
+    next_turn, route_m = _guided(snapshot, memory, settings.guidance)
     paused = bool(int(snapshot.events.events) & Event.PAUSE)
     shown = HudView(
         settings=settings,
@@ -184,16 +222,19 @@ def view(
         stale=age_s > STALE_S and not paused,
         shown_kmh=kmh,
         limit_kmh=_limit_kmh(snapshot, settings),
+        ahead=next_turn,
         rpm=max(0.0, vehicle.engine_radps * RPM_PER_RADPS),
         engine_running=vehicle.engine_running != 0.0,
         gear=gear_label(vehicle.gear),
         automatic=command.automatic != 0.0,
         mode=arbitration.mode,
-        mode_label="PAUSED" if paused else mode_label(arbitration.mode),
-        reason_label=reason_label(arbitration.reason if stop_reason is None else stop_reason),
-        todo_label=next_step(snapshot, settings.standstill_mps, settings.manual_button, settings.reset_button),
-        refusal_label=reason_label(arbitration.refusal) if arbitration.refusal else "",
-        notice_label=notice_label(arbitration.notice or snapshot.broken_rule),
+        mode_label=say(language, PAUSED if paused else mode_label(arbitration.mode)),
+        reason_label=say(language, reason_label(arbitration.reason if stop_reason is None else stop_reason)),
+        todo_label=next_step(
+            snapshot, language, settings.standstill_mps, settings.manual_button, settings.reset_button
+        ),
+        refusal_label=say(language, reason_label(arbitration.refusal)) if arbitration.refusal else "",
+        notice_label=say(language, notice_label(arbitration.notice or snapshot.broken_rule)),
         recording_failed=snapshot.recording_failed,
         takeover_stage=int(arbitration.takeover_stage),
         remaining_s=_remaining_s(snapshot, settings),
@@ -216,7 +257,7 @@ def view(
         pedals_validity=_worst(driver.throttle_validity, driver.brake_validity, driver.clutch_validity),
         shifter_validity=driver.shifter_validity,
         handbrake_validity=driver.handbrake_validity,
-        lever_label=_lever_label(driver.lever_fault, command.gate_active),
+        lever_label=say(language, _lever_label(driver.lever_fault, command.gate_active)),
         distance_m=vehicle.distance_m,
         force=force,
         can_up=can_up,
@@ -228,6 +269,7 @@ def view(
         motor_seen=motor_seen,
         clipped_s=clipped_s,
         stop_reason=stop_reason,
+        route_m=route_m,
         eased=force == "eased",
     )
 
@@ -238,6 +280,14 @@ def _limit_kmh(snapshot: Snapshot, settings: HudSettings) -> int:
     if situation.lane < 0.0:
         return round(settings.limit_kmh)
     return 0 if situation.speed_limit_mps >= FAR else round(situation.speed_limit_mps * KMH_PER_MPS)
+
+
+def _guided(snapshot: Snapshot, memory: HudMemory, guidance: Guidance | None) -> tuple[Ahead | None, float | None]:
+    """Return what comes next on the route, and where along it the vehicle is."""
+    if guidance is None:
+        return None, None
+    vehicle = snapshot.vehicle
+    return ahead(guidance, vehicle.x_m, vehicle.y_m, vehicle.yaw_rad, memory.route_m)
 
 
 def _stop_reason(mode: float, reason: float, memory: HudMemory) -> float | None:
@@ -257,8 +307,8 @@ def _remaining_s(snapshot: Snapshot, settings: HudSettings) -> float:
 
 def _lever_label(lever_fault: float, gate_active: float) -> str:
     if lever_fault > 0.0:
-        return "two gears"
-    return "not now" if int(gate_active) & GateLimit.GEAR else ""
+        return TWO_GEARS
+    return NOT_NOW if int(gate_active) & GateLimit.GEAR else ""
 
 
 def _link_age_s(snapshot: Snapshot) -> float | None:

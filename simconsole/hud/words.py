@@ -2,6 +2,8 @@
 
 from typing import Final
 
+from simconsole.hud.language import say
+from simconsole.profiles.view import LanguageProfile
 from simconsole.values.layout import read
 from simconsole.values.signals import Mode
 from simconsole.values.state_vector import LAYOUT, Snapshot
@@ -15,8 +17,12 @@ NOBODY: Final = "NOBODY"
 STEER_OR_BRAKE: Final = "steer or brake"
 MENDING: Final = ("plug the wheel in", "align wheel with car", "plug the pedals in", "release the pedals")
 """What brings a lost cockpit back: no hand on a wheel that is not heard can take over."""
-LONGEST_PRESS: Final = "press paddle right, R3 to drive"
-"""As wide as a button's label can make it (`simconsole.profiles.device.ButtonLabel`)."""
+WAIT: Final = "wait: car is braking"
+PRESS_TO_DRIVE: Final = "press {button} to drive"
+PRESS_TO_RESET: Final = "press {button} to reset"
+ASK: Final = "ask the operator"
+LONGEST_BUTTON: Final = "paddle right, R3"
+"""As wide as a button's label can be (`simconsole.profiles.device.ButtonLabel`)."""
 _SILENT_S: Final = 0.5
 """A device that was not heard for this long is not there, or says nothing any more."""
 
@@ -37,11 +43,14 @@ def other_side(snapshot: Snapshot) -> str:
     return AUTOPILOT
 
 
-def next_step(snapshot: Snapshot, standstill_mps: float, manual_button: str, reset_button: str) -> str:
+def next_step(
+    snapshot: Snapshot, language: LanguageProfile, standstill_mps: float, manual_button: str, reset_button: str
+) -> str:
     """Return what the driver does next, in at most five words; empty where they just drive.
 
     Args:
         snapshot: The newest tick.
+        language: The driver's.
         standstill_mps: Up to this speed the car counts as standing.
         manual_button: Label of the button that asks for manual control; empty without one.
         reset_button: The same of the one that resets a latched stop.
@@ -49,18 +58,20 @@ def next_step(snapshot: Snapshot, standstill_mps: float, manual_button: str, res
     mode = snapshot.arbitration.mode
     if mode == Mode.EMERGENCY_STOP:
         if abs(snapshot.vehicle.vx_mps) > standstill_mps:
-            return "wait: car is braking"
-        return _press(reset_button, "to reset")
+            return say(language, WAIT)
+        return _press(language, PRESS_TO_RESET, reset_button)
     if mode not in (Mode.TAKEOVER_REQUESTED, Mode.MINIMAL_RISK, Mode.STOPPED):
         return ""
     mended = _mending(snapshot)
     if mended:
-        return mended
-    return _press(manual_button or reset_button, "to drive") if mode == Mode.STOPPED else STEER_OR_BRAKE
+        return say(language, mended)
+    if mode == Mode.STOPPED:
+        return _press(language, PRESS_TO_DRIVE, manual_button or reset_button)
+    return say(language, STEER_OR_BRAKE)
 
 
-def _press(button: str, purpose: str) -> str:
-    return f"press {button} {purpose}" if button else "ask the operator"
+def _press(language: LanguageProfile, phrase: str, button: str) -> str:
+    return say(language, phrase, button=button) if button else say(language, ASK)
 
 
 def _mending(snapshot: Snapshot) -> str:

@@ -35,6 +35,7 @@ DRIVE_VARIABLE: Final = "SIMCONSOLE_DRIVE"
 SIGNALS: Final = tuple(
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 )  # SIGHUP: the terminal was closed; Windows has none
+_PR_SET_PDEATHSIG: Final = 1  # linux/prctl.h
 _LOOK_S: Final = 0.01
 _GRACE_S: Final = 0.1
 
@@ -192,6 +193,17 @@ def end_with_parent() -> None:
         end_at_once(1)
 
     threading.Thread(target=watch, name="parent", daemon=True).start()
+
+
+def end_with_parent_thread() -> None:
+    """Let the kernel kill this process when the thread that has started it ends. Linux; between fork and exec.
+
+    For programs that are not ours, and so know nothing of `follow_parent`.
+    """
+    if sys.platform == "linux":
+        import ctypes
+
+        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
 def attached(program: Callable[..., object], *arguments: object) -> None:

@@ -4,7 +4,7 @@ import contextlib
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import msgspec
 
@@ -48,3 +48,21 @@ class Receipts:
         self._saved_ns = now_ns
         with contextlib.suppress(OSError):  # the run folder is gone: the core has ended
             write_atomically(self._path, msgspec.json.encode(self._latencies.summary_us()), durable=False)
+
+
+def latencies_of(folder: Path, stem: str) -> dict[str, Any]:
+    """Return the workers' newest latency statistics, at most a second old, by hop and worker: `receive, hud`.
+
+    Args:
+        folder: the run folder.
+        stem: how their files' names begin, before the worker's.
+    """
+    found: dict[str, Any] = {}
+    for path in sorted(folder.glob(f"{stem}.*.json")):
+        try:
+            pages = msgspec.json.decode(path.read_bytes(), type=dict[str, Any])
+        except (OSError, msgspec.DecodeError):
+            continue
+        worker = path.name.split(".")[1]
+        found.update({f"{hop}, {worker}": page for hop, page in pages.items()})
+    return found

@@ -286,6 +286,18 @@ def remove_run_folder(folder: Path) -> None:
         os.close(descriptor)
 
 
+def run_folders() -> list[Path]:
+    """Return the run folders of this user's processes that go on."""
+    mine = getattr(os, "getuid", lambda: 0)()
+    found = []
+    for path in sorted(_base().glob(f"{PREFIX}*-*")):
+        owner = path.name.removeprefix(PREFIX).partition("-")[0]
+        with contextlib.suppress(OSError):
+            if owner.isdigit() and _alive(int(owner)) and path.is_dir() and path.stat().st_uid == mine:
+                found.append(path)
+    return found
+
+
 def sweep(*bases: Path) -> list[Path]:
     """Remove what dead processes of this user have left in `bases`: folders and files; return all of it.
 

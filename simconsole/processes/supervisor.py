@@ -22,6 +22,7 @@ from typing import Final
 import msgspec
 
 from simconsole.processes.lifetimes import ORPHAN_S, close_pipe, end, follow_parent, spawn, undone
+from simconsole.processes.notices import NoticeWriter
 from simconsole.processes.shared_memory import remove_run_folder
 from simconsole.processes.worker import WorkerCall, WorkerSpec, run_child
 from simconsole.values.errors import WorkerError
@@ -122,8 +123,9 @@ class SupervisorHandle:
 class _KeptWorker:
     """One worker as the supervisor sees it."""
 
-    def __init__(self, spec: WorkerSpec, supervisor: SupervisorSpec) -> None:
+    def __init__(self, spec: WorkerSpec, supervisor: SupervisorSpec, notices: NoticeWriter) -> None:
         self.spec = spec
+        self._notices = notices
         self._call = WorkerCall(folder=supervisor.folder, worker=spec, patience_s=supervisor.patience_s)
         self.process: subprocess.Popen[bytes] | None = None
         self.restarts = 0
@@ -143,8 +145,10 @@ class _KeptWorker:
             except WorkerError:
                 self._back_off(now_s)
             return True
-        if self.process.poll() is None:
+        if (code := self.process.poll()) is None:
             return False
+        how = f"signal {-code}" if code < 0 else f"exit code {code}"
+        self._notices.tell("WARN", f"the {self.spec.name} worker has ended ({how}) and is started again")
         close_pipe(self.process)
         self.process = None
         self._back_off(now_s)
@@ -160,7 +164,8 @@ class _KeptWorker:
 
 def supervise(spec: SupervisorSpec, stop: Callable[[], bool], hurry: Callable[[], bool]) -> None:
     """Keep the workers of `spec` running until `stop`; then end them, soon with `hurry`, and remove the run folder."""
-    kept = [_KeptWorker(worker, spec) for worker in spec.workers]
+    notices = NoticeWriter(Path(spec.folder), "supervisor")
+    kept = [_KeptWorker(worker, spec, notices) for worker in spec.workers]
     try:
         while not stop():
             changed = [worker.look(time.monotonic()) for worker in kept]

@@ -13,6 +13,7 @@ from typing import Any, Self
 import msgspec
 
 from simconsole.processes.lifetimes import follow_parent, read_told
+from simconsole.processes.notices import NoticeWriter, log_notices
 from simconsole.values.errors import SimConsoleError, WorkerError, one_line
 
 
@@ -85,8 +86,14 @@ def run_child(role: str, run: Callable[[bytes], None]) -> int:
 
 def _run(line: bytes) -> None:
     call = msgspec.json.decode(line, type=WorkerCall)
-    stop = follow_parent(call.patience_s).wants_end
-    load_worker(call.worker).run(Path(call.folder), stop)
+    stop, folder = follow_parent(call.patience_s).wants_end, Path(call.folder)
+    notices = NoticeWriter(folder, call.worker.name)
+    log_notices(notices)
+    try:
+        load_worker(call.worker).run(folder, stop)
+    except (SimConsoleError, OSError, MemoryError) as error:
+        notices.tell("ERROR", one_line(error))
+        raise
 
 
 def main() -> int:

@@ -1,10 +1,11 @@
 """How imperfect the link to a controller is: what it measures of the car, and how late its commands act."""
 
-from typing import Annotated
+from typing import Annotated, Final
 
 from msgspec import Meta, Struct
 
-Milliseconds = Annotated[float, Meta(ge=0.0, le=2000.0)]
+LONGEST_MS: Final = 2000.0
+Milliseconds = Annotated[float, Meta(ge=0.0, le=LONGEST_MS)]
 Share = Annotated[float, Meta(ge=0.0, le=1.0)]
 
 
@@ -25,21 +26,36 @@ class LocalisationProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     """How long a drift takes from one value to an independent one."""
 
 
-class LinkProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The link of a controller on the ROS side; without anything set it is perfect, as far as sockets are."""
+class WayProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What happens to messages on their way, each by itself; added to what the sockets take, in whole ticks."""
+
+    delay_ms: Milliseconds = 0.0
+    jitter_ms: Milliseconds = 0.0
+    """Of the delay, evenly between 0 and this much more: messages overtake each other."""
+    loss_share: Share = 0.0
+    """Of the messages that never arrive."""
+
+
+class LinkProfile(WayProfile, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The link of a controller on the ROS side; without anything set it is perfect, as far as sockets are.
+
+    Its own delay, jitter and loss are those of commands, from the state that a command answers (or from when that
+    arrived) to the tick in which it acts; a command that is overtaken is dropped as out of order.
+    """
 
     seed: Annotated[int, Meta(ge=0, le=2**53)] = 1
     """Of all that is drawn: equal seeds give equal errors, delays and losses."""
     localisation: LocalisationProfile = LocalisationProfile()
-    delay_ms: Milliseconds = 0.0
-    """From the state that a command answers to the tick in which it acts, there and back, added to what the sockets
-    take; in whole ticks."""
-    jitter_ms: Milliseconds = 0.0
-    """Of the delay, evenly between 0 and this much more; a command that is overtaken is dropped as out of order."""
-    loss_share: Share = 0.0
-    """Of the commands that never arrive."""
+    measurements: WayProfile = WayProfile()
+    """Of what a controller is told of vehicle and road users: /odom, /tf, /imu/data and the like."""
     ground_truth: bool = False
-    """Publish /ground_truth/odom although the localisation has errors."""
+    """Publish /ground_truth/odom although the localisation has errors, or measurements come late or never."""
+
+
+def late_ms(link: LinkProfile) -> float:
+    """Return the mean time from a measurement to the tick in which the command that answers it acts."""
+    there = link.measurements
+    return there.delay_ms + 0.5 * there.jitter_ms + link.delay_ms + 0.5 * link.jitter_ms
 
 
 def link_label(link: LinkProfile) -> str:
@@ -55,6 +71,9 @@ def link_label(link: LinkProfile) -> str:
         (link.delay_ms, "ms", "delay"),
         (link.jitter_ms, "ms", "jitter"),
         (link.loss_share * 100.0, "%", "loss"),
+        (link.measurements.delay_ms, "ms", "delay of measurements"),
+        (link.measurements.jitter_ms, "ms", "jitter of measurements"),
+        (link.measurements.loss_share * 100.0, "%", "loss of measurements"),
     ):
         if value:
             parts.append(f"{value:g} {unit} {what}")

@@ -1,6 +1,6 @@
 """The session profile: one drive, in the paper's six sections."""
 
-from typing import Annotated, Final, Literal
+from typing import Annotated, Literal
 
 from msgspec import Meta, Struct
 
@@ -10,11 +10,8 @@ from simconsole.profiles.control import ControlProfile
 from simconsole.profiles.faults import Faults
 from simconsole.profiles.person import PersonPlan
 from simconsole.profiles.traffic import TrafficProfile
+from simconsole.profiles.validation import ProfileName
 from simconsole.profiles.view import HudProfile, SceneProfile, SoundProfile
-
-PROFILE_FILES: Final = (".yaml", ".yml")
-ProfileName = Annotated[str, Meta(pattern=r"^([A-Za-z0-9][A-Za-z0-9_-]{0,63}|.{1,1000}\.ya?ml)$")]
-"""A shipped profile's bare name, or a file in the folder of the session or scenario that names it."""
 
 
 class Section(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -124,6 +121,11 @@ class ModeSection(Section, frozen=True, kw_only=True):
     def control_period_ticks(self) -> int:
         """Ticks from one answer of the controller to the next, in lockstep."""
         return max(1, self.control_period_ms * self.tick_hz // 1000)
+
+    @property
+    def control_hz(self) -> float:
+        """How often the controller is told where it is and answers, in lockstep."""
+        return self.tick_hz / self.control_period_ticks
 
 
 class SessionProfile(Section, frozen=True, kw_only=True):

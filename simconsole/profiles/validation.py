@@ -6,7 +6,7 @@ values and the type along the path.
 
 import difflib
 import re
-from typing import Any, Final, TypeVar
+from typing import Annotated, Any, Final, TypeVar
 
 import msgspec
 import msgspec.inspect
@@ -14,6 +14,10 @@ import msgspec.inspect
 from simconsole.values.errors import ProfileError
 
 T = TypeVar("T")
+
+PROFILE_FILES: Final = (".yaml", ".yml")
+ProfileName = Annotated[str, msgspec.Meta(pattern=r"^([A-Za-z0-9][A-Za-z0-9_-]{0,63}|.{1,1000}\.ya?ml)$")]
+"""A shipped profile's bare name, or a file in the folder of the session or scenario that names it."""
 
 _LOCATED: Final = re.compile(r"(?P<what>.*?)(?: - at (?:`(?P<key>key)` in )?`\$(?P<path>.*)`)?", re.DOTALL)
 _STEP: Final = re.compile(r"\.(?P<name>[^.\[]+)|\[(?P<index>\d+|\.\.\.)\]")

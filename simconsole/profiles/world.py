@@ -144,7 +144,7 @@ class RoadsProfile(WorldSection, frozen=True, kw_only=True, tag_field="kind", ta
     title: str
     map: MapFile
     polygons: MapFile | None = None
-    """Of buildings and cones: SUMO's `.poly.xml`."""
+    """Of buildings, walls, trees and cones: SUMO's `.poly.xml`."""
     route: RouteByEdges | RouteByPlaces | RandomRoute
     ground: GroundProfile | None = None
     """With it the ground is as high as the map's lanes; without it flat, and the same beside the road as on it."""

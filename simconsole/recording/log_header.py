@@ -28,6 +28,7 @@ STATE: Final = "state"
 ACTS: Final = "acts"
 """The stream of the operator's acts and notes, JSON."""
 ROAD_USERS: Final = "road_users"
+PLANS: Final = "plans"
 """The stream of the road users, a table of float64."""
 _HEAD: Final = Struct("<II")
 

@@ -14,11 +14,12 @@ def recorded_road_users(recording: Recording) -> Iterator[RoadUsersAt]:
     Raises:
         RecordingError: a message is no table of road users.
     """
-    if all(stream.name != ROAD_USERS for stream in recording.header.streams):
+    encoding = next((stream.encoding for stream in recording.header.streams if stream.name == ROAD_USERS), None)
+    if encoding is None:
         return
     for message in recording.messages(ROAD_USERS):
         try:
-            table = from_bytes(message.content)
+            table = from_bytes(message.content, encoding)
         except ValueError as problem:
             raise RecordingError(f"tick {message.tick}: road users: {problem}") from None
         yield RoadUsersAt(message.tick - 1, table)

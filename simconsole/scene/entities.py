@@ -36,9 +36,6 @@ MODE_COLOURS: Final[dict[float, Colour]] = {
 }
 """The driven path's colour says who drove; the mode lane names it."""
 
-TAKEOVER_COLOURS: Final[tuple[Colour, ...]] = ((72, 80, 90), (255, 176, 32), (235, 45, 60))
-"""No take-over asked for, asked, escalated."""
-
 DASH_M: Final = 3.0
 GAP_M: Final = 4.0
 LIFT_M: Final = 0.02
@@ -239,7 +236,7 @@ def car_solids(size: Dimensions) -> tuple[Solid, ...]:
     middle = 0.5 * size.length_m - size.rear_overhang_m
     width = 0.5 * size.width_m
     low = 0.6 * size.height_m
-    clearance = 0.08 * size.height_m
+    clearance = 0.18 * size.height_m
     body = Solid((middle, 0.0, 0.5 * (low + clearance)), (0.5 * size.length_m, width, 0.5 * (low - clearance)), BODY)
     high = 0.5 * (size.height_m - low)
     at = (middle - 0.06 * size.length_m, 0.0, low + high)

@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simconsole.scene.entities import Array, Colour
-from simconsole.values.height_field import HeightField, spline_at
 from simconsole.values.units import NS_PER_S
 from simconsole.world.traffic.road_users import RoadUserKind, RoadUsersAt
 
@@ -27,16 +26,15 @@ class RoadUserShapes(NamedTuple):
     colours: list[Colour]
 
 
-def road_user_shapes(steps: Sequence[RoadUsersAt], tick_hz: int, ground: HeightField | None = None) -> RoadUserShapes:
-    """Return the boxes of steps of traffic, at least one, on flat ground or on a field."""
+def road_user_shapes(steps: Sequence[RoadUsersAt], tick_hz: int) -> RoadUserShapes:
+    """Return the boxes of steps of traffic, at least one."""
     users = np.vstack([step.users for step in steps])
     half = 0.5 * users[:, 6:9]
     nought = np.zeros(len(users))
-    foot = nought if ground is None else spline_at(ground, 0, users[:, 2], users[:, 3])
     return RoadUserShapes(
         times_ns=np.array([step.tick * NS_PER_S // tick_hz for step in steps], np.int64),
         counts=[len(step.users) for step in steps],
-        centres=np.column_stack((users[:, 2:4], foot + half[:, 2])),
+        centres=np.column_stack((users[:, 2:4], users[:, 9] + half[:, 2])),
         half_sizes=half,
         quaternions=np.column_stack((nought, nought, np.sin(0.5 * users[:, 4]), np.cos(0.5 * users[:, 4]))),
         colours=[_colour(kind) for kind in users[:, 1].tolist()],

@@ -9,17 +9,14 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simconsole.scene.entities import Array, Colour
-from simconsole.values.labels import (
-    commander_label,
-    gear_label,
-    indicator_label,
-    mode_label,
-    notice_label,
-    reason_label,
-)
+from simconsole.scene.entities import Array
+from simconsole.scene.lanes import LANE_COLUMNS, Lane, changes, lane_changes
+from simconsole.scene.plots import PLOT_COLUMNS, Follower, plot_lines
+from simconsole.scene.predicted_way import WAY_COLUMNS, Ways, ways
+from simconsole.scene.wheel_shapes import WHEEL_COLUMNS, ShownWheels, WheelShapes, wheel_shapes
+from simconsole.values.labels import mode_label, notice_label, reason_label
 from simconsole.values.signals import Event, Mode, Notice
-from simconsole.values.units import DEG_PER_RAD, KMH_PER_MPS, NS_PER_S, RPM_PER_RADPS
+from simconsole.values.units import NS_PER_S
 
 Ticks = NDArray[np.int64]
 
@@ -27,79 +24,21 @@ STRIP_POINTS: Final = 12
 """Points of one piece of the driven path: each piece appears when the cursor reaches its end."""
 STANDING_M: Final = 0.05
 """A shorter piece is joined to the next one: a standing car draws nothing."""
-
-
-class Series(NamedTuple):
-    """One line of a plot."""
-
-    name: str
-    column: str
-    factor: float
-    colour: Colour
-
-
-class Plot(NamedTuple):
-    """One plot: its entity path, its title with unit, its lines and its fixed range, if any."""
-
-    path: str
-    title: str
-    series: tuple[Series, ...]
-    low: float | None = None
-    high: float | None = None
-
-
-PLOTS: Final[tuple[Plot, ...]] = (
-    Plot("plots/speed", "speed, km/h", (Series("car", "vehicle.vx_mps", KMH_PER_MPS, (226, 232, 238)),)),
-    Plot(
-        "plots/pedals",
-        "pedals, 0 to 1",
-        (
-            Series("throttle", "command.throttle", 1.0, (54, 217, 123)),
-            Series("brake", "command.brake", 1.0, (235, 80, 80)),
-            Series("clutch", "vehicle.clutch", 1.0, (150, 160, 175)),
-        ),
-        -0.05,
-        1.05,
-    ),
-    Plot(
-        "plots/road_wheel",
-        "road wheel, deg, left positive",
-        (
-            Series("driver asks", "arbitration.person_road_wheel_rad", DEG_PER_RAD, (255, 176, 32)),
-            Series("autopilot asks", "arbitration.remote_road_wheel_rad", DEG_PER_RAD, (54, 217, 123)),
-            Series("car", "vehicle.road_wheel_rad", DEG_PER_RAD, (226, 232, 238)),
-        ),
-    ),
-    Plot(
-        "plots/authority",
-        "autopilot's authority, 0 to 1",
-        (
-            Series("lateral", "arbitration.remote_lateral", 1.0, (54, 217, 123)),
-            Series("longitudinal", "arbitration.remote_longitudinal", 1.0, (150, 222, 176)),
-        ),
-        -0.05,
-        1.05,
-    ),
-    Plot("plots/engine", "engine, rpm", (Series("engine", "vehicle.engine_radps", RPM_PER_RADPS, (226, 232, 238)),)),
+_REMEMBERED: Final = (
+    *LANE_COLUMNS,
+    "arbitration.reason",
+    "arbitration.refusal",
+    "arbitration.notice",
+    "events.events",
 )
-
-
-_LANES: Final = (
-    ("lanes/mode", "arbitration.mode"),  # rerun sorts lanes by name: who drives comes first
-    ("lanes/remote", "arbitration.commander"),
-    ("lanes/takeover", "arbitration.takeover_stage"),
-    ("lanes/transmission", "vehicle.gear"),
-    ("lanes/turn_indicators", "command.turn_indicators"),
-    ("lanes/hazard_lights", "command.hazard_lights"),
-)
-TAKEOVER_LABELS: Final = ("none", "asked", "escalated")
 _OTHERS: Final = ("x_m", "y_m", "z_m", "yaw_rad", "pitch_rad", "roll_rad")
 NEEDED: Final[tuple[str, ...]] = tuple(
     dict.fromkeys(
         (
             *(f"vehicle.{name}" for name in _OTHERS),
-            *(line.column for plot in PLOTS for line in plot.series),
-            *(column for _, column in _LANES),
+            *PLOT_COLUMNS,
+            *LANE_COLUMNS,
+            *WAY_COLUMNS,
             "arbitration.reason",
             "arbitration.refusal",
             "arbitration.notice",
@@ -108,15 +47,7 @@ NEEDED: Final[tuple[str, ...]] = tuple(
         )
     )
 )
-"""The columns of a state vector that the scene reads."""
-
-
-class Lane(NamedTuple):
-    """Changes of one state over time: at `times_ns[i]` it became `states[i]` (labels)."""
-
-    path: str
-    times_ns: list[int]
-    states: list[str]
+"""The columns of a state vector that the scene reads of any vehicle."""
 
 
 class Entry(NamedTuple):
@@ -146,6 +77,18 @@ class Piece(NamedTuple):
     lanes: tuple[Lane, ...]
     strips: tuple[Strip, ...]
     entries: tuple[Entry, ...]
+    ways: Ways
+    wheels: WheelShapes | None  # of a car, at the scene's own rate
+
+
+class ShownVehicle(NamedTuple):
+    """What one must know of a vehicle, beside its state, to show how it moves."""
+
+    wheelbase_m: float = 0.0  # 0: it turns in place
+    wheels: ShownWheels | None = None  # of a car
+
+
+NO_VEHICLE: Final = ShownVehicle()
 
 
 class Memory(NamedTuple):
@@ -156,7 +99,14 @@ class Memory(NamedTuple):
 
 
 def piece(
-    vectors: Array, columns: Sequence[str], ticks: Ticks, tick_hz: int, rate_hz: int, memory: Memory
+    vectors: Array,
+    columns: Sequence[str],
+    ticks: Ticks,
+    tick_hz: int,
+    rate_hz: int,
+    memory: Memory,
+    vehicle: ShownVehicle = NO_VEHICLE,
+    follower: Follower | None = None,
 ) -> tuple[Piece, Memory]:
     """Turn state vectors into shapes.
 
@@ -167,24 +117,32 @@ def piece(
         tick_hz: ticks per second.
         rate_hz: how often poses and plots are kept; changes of mode and log lines keep their exact tick.
         memory: what the piece before left; `Memory()` at the start.
+        vehicle: what one must know of it beside its state.
+        follower: of the route; None: there is none.
     """
-    table = {name: vectors[:, columns.index(name)] for name in NEEDED}
+    places = {name: index for index, name in enumerate(columns)}
+    table = {name: vectors[:, places[name]] for name in NEEDED}
     times_ns = ticks * NS_PER_S // tick_hz
     keep = np.flatnonzero(ticks % max(1, round(tick_hz / rate_hz)) == 0)
     kept = {name: column[keep] for name, column in table.items()}
     positions = np.column_stack([kept[f"vehicle.{axis}_m"] for axis in "xyz"])
     strips, open_end = _strips(positions, kept["arbitration.mode"], times_ns[keep], memory.open_end)
-    lanes, seen = _lanes(table, times_ns, memory.seen)
+    entries = tuple(_entries(table, times_ns, memory.seen))
+    wheels = None
+    if vehicle.wheels is not None and set(WHEEL_COLUMNS) <= set(places):
+        wheels = wheel_shapes({name: vectors[keep, places[name]] for name in WHEEL_COLUMNS}, vehicle.wheels)
     return Piece(
         ticks=ticks[keep],
         times_ns=times_ns[keep],
         positions=positions,
         quaternions=quaternions(kept["vehicle.yaw_rad"], kept["vehicle.pitch_rad"], kept["vehicle.roll_rad"]),
-        plots={plot.path: np.column_stack([line.factor * kept[line.column] for line in plot.series]) for plot in PLOTS},
-        lanes=lanes,
+        plots=plot_lines(kept, tick_hz, follower or Follower()),
+        lanes=lane_changes(table, times_ns, memory.seen),
         strips=strips,
-        entries=tuple(_entries(table, times_ns, memory.seen)),
-    ), Memory(seen, open_end)
+        entries=entries,
+        ways=ways(table, ticks, times_ns, tick_hz, vehicle.wheelbase_m),
+        wheels=wheels,
+    ), Memory({name: float(table[name][-1]) for name in _REMEMBERED}, open_end)
 
 
 def quaternions(yaw_rad: Array, pitch_rad: Array, roll_rad: Array) -> Array:
@@ -202,43 +160,6 @@ def quaternions(yaw_rad: Array, pitch_rad: Array, roll_rad: Array) -> Array:
     )
 
 
-def lane_label(path: str, value: float) -> str:
-    """Return what a lane shows for a value."""
-    if path == "lanes/mode":
-        return mode_label(value)
-    if path == "lanes/remote":
-        return commander_label(value)
-    if path == "lanes/takeover":
-        return TAKEOVER_LABELS[int(value)] if value in (0.0, 1.0, 2.0) else f"{value:g}"
-    if path == "lanes/turn_indicators":
-        return indicator_label(value)
-    if path == "lanes/hazard_lights":
-        return "on" if value > 0.0 else "off"
-    return gear_label(value)
-
-
-def _lanes(
-    table: dict[str, Array], times_ns: Ticks, seen: dict[str, float] | None
-) -> tuple[tuple[Lane, ...], dict[str, float]]:
-    lanes: list[Lane] = []
-    last: dict[str, float] = {}
-    for path, column in _LANES:
-        values = table[column]
-        changed = _changes(values, None if seen is None else seen[column])
-        labels = [lane_label(path, float(values[index])) for index in changed]
-        lanes.append(Lane(path, times_ns[changed].tolist(), labels))
-        last[column] = float(values[-1])
-    for column in ("arbitration.reason", "arbitration.refusal", "arbitration.notice", "events.events"):
-        last[column] = float(table[column][-1])
-    return tuple(lanes), last
-
-
-def _changes(values: Array, before: float | None) -> NDArray[np.intp]:
-    """Return where `values` differ from the value before; without one, the first counts as a change."""
-    first = values[0] - 1.0 if before is None else before
-    return np.flatnonzero(np.diff(values, prepend=first) != 0.0)
-
-
 _LEVELS: Final[dict[float, str]] = {
     Mode.TAKEOVER_REQUESTED: "WARN",
     Mode.MINIMAL_RISK: "ERROR",
@@ -249,12 +170,12 @@ _LEVELS: Final[dict[float, str]] = {
 def _entries(table: dict[str, Array], times_ns: Ticks, seen: dict[str, float] | None) -> Iterator[Entry]:
     found: list[tuple[int, Entry]] = []
     mode, reason = table["arbitration.mode"], table["arbitration.reason"]
-    for index in _changes(mode, None if seen is None else seen["arbitration.mode"]).tolist():
+    for index in changes(mode, None if seen is None else seen["arbitration.mode"]).tolist():
         text = f"{mode_label(mode[index])}: {reason_label(reason[index])}"
         found.append((index, Entry(int(times_ns[index]), _LEVELS.get(mode[index], "INFO"), text)))
     for column, label_of in (("arbitration.refusal", reason_label), ("arbitration.notice", notice_label)):
         told = table[column]
-        changed = _changes(told, 0.0 if seen is None else seen[column])
+        changed = changes(told, 0.0 if seen is None else seen[column])
         found.extend(
             (index, Entry(int(times_ns[index]), "WARN", label_of(told[index])))
             for index in changed[told[changed] != 0.0].tolist()
@@ -262,7 +183,7 @@ def _entries(table: dict[str, Array], times_ns: Ticks, seen: dict[str, float] | 
     failed = _recording_failed(table["events.events"])
     before = 0.0 if seen is None else float(_recording_failed(np.array([seen["events.events"]]))[0])
     alarm = notice_label(float(Notice.RECORDING_FAILED))
-    found.extend((index, Entry(int(times_ns[index]), "ERROR", alarm)) for index in _changes(failed, before).tolist())
+    found.extend((index, Entry(int(times_ns[index]), "ERROR", alarm)) for index in changes(failed, before).tolist())
     for who, column in (("event", "events.events"), ("event on CAN", "events.ecu_events")):
         events = table[column] - Event.RECORDING_FAILED * _recording_failed(table[column])  # lasts: logged once above
         for index in np.flatnonzero(events).tolist():

@@ -6,6 +6,7 @@ import subprocess
 
 from simconsole.processes.lifetimes import ATTACHED, DRIVE_VARIABLE, spawn
 from simconsole.profiles.bridge import BridgeProfile
+from simconsole.profiles.link import late_ms
 from simconsole.profiles.session import SessionProfile
 from simconsole.values.errors import BridgeError
 
@@ -30,20 +31,27 @@ def own_token(session: SessionProfile) -> str | None:
 
 
 def start_autopilot(
-    url: str, session: SessionProfile, bridge: BridgeProfile, drive: str, token: str | None
+    url: str,
+    session: SessionProfile,
+    bridge: BridgeProfile,
+    drive: str,
+    token: str | None,
+    plan_hz: float = 0.0,
 ) -> "subprocess.Popen[bytes]":
     """Start `simconsole autopilot` as a program of its own, which ends with this process.
 
     Args:
         url: the console's own server.
-        session: what to follow, how, and in which car.
+        session: what to follow, how, in which car, and what its gate lets pass.
         bridge: what its topics are called, its certificate, and how late its commands act.
         drive: the drive's nonce, without which the program would take the next drive at this address for this one.
+        plan_hz: how often a second it is to tell what it plans; 0: never.
         token: what the server asks for; both go by the environment, for everyone can read a program's arguments.
 
     Raises:
         BridgeError: it cannot be started.
     """
+    control = session.features.control
     arguments = [
         "-m",
         "simconsole",
@@ -57,9 +65,15 @@ def start_autopilot(
         session.features.tracker,
         "--vehicle",
         session.scenario.vehicle,
+        "--lateral-accel",
+        f"{control.automatic_lateral_accel_mps2:g}",
+        "--lateral-jerk",
+        f"{control.automatic_lateral_jerk_mps3:g}",
     ]
-    if late_ms := bridge.link.delay_ms + 0.5 * bridge.link.jitter_ms:
-        arguments += ["--delay-ms", f"{late_ms:g}"]
+    if delay_ms := late_ms(bridge.link):
+        arguments += ["--delay-ms", f"{delay_ms:g}"]
+    if plan_hz:
+        arguments += ["--plan-hz", f"{plan_hz:g}"]
     if bridge.namespace:
         arguments += ["--namespace", bridge.namespace]
     for standard, name in bridge.rename.items():

@@ -16,11 +16,39 @@ from simconsole.processes.byte_slot import ByteSlot
 from simconsole.processes.shared_memory import Ring
 from simconsole.processes.worker import Worker
 from simconsole.profiles.bridge import CameraProfile
+from simconsole.session.view_job import ViewJob, load_view_job
 from simconsole.session.worker_programs import CAMERA, SNAPSHOTS, VIEW_JOB, RoadUsersRing, snapshot_of
+from simconsole.values.state_vector import Snapshot
+from simconsole.world.traffic.road_users import NOBODY_AT_ALL, RoadUsersAt
 
 LOOK_S: Final = 0.002
 NICE: Final = 10
 """The core, and the display of a person who drives, come first."""
+
+
+DrawCamera = Callable[[Snapshot, RoadUsersAt], bytes]
+"""Returns what the camera sees at a tick, as JPEG."""
+
+
+def drawn_camera(job: ViewJob, profile: CameraProfile) -> DrawCamera:
+    """Return what draws a camera's pictures by EGL, without a window.
+
+    Raises:
+        WorkerError: this machine has no OpenGL without a window.
+    """
+    from simconsole.hud.driver_view.motion import shown_vehicle
+    from simconsole.hud.driver_view.other_vehicles import at_moment
+    from simconsole.hud.gl.camera_picture import CameraPicture
+    from simconsole.hud.gl.context import windowless_context
+
+    os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
+    picture = CameraPicture(windowless_context(), job.scene(), profile)
+
+    def draw(snapshot: Snapshot, users: RoadUsersAt) -> bytes:
+        shown = shown_vehicle(snapshot)
+        return picture.jpeg(shown._replace(others=at_moment(users, shown.t_s, snapshot.tick_hz)))
+
+    return draw
 
 
 class CameraWorker(Worker, frozen=True, kw_only=True):
@@ -32,21 +60,12 @@ class CameraWorker(Worker, frozen=True, kw_only=True):
 
     def run(self, folder: Path, stop: Callable[[], bool]) -> None:
         """Draw until `stop`."""
-        from simconsole.hud.driver_view.motion import shown_vehicle
-        from simconsole.hud.driver_view.other_vehicles import at_moment
-        from simconsole.hud.driver_view.scene import view_scene
-        from simconsole.hud.gl.camera_picture import CameraPicture
-        from simconsole.hud.gl.context import windowless_context
-        from simconsole.session.view_job import load_view_job
-
         if sys.platform != "win32":
             with contextlib.suppress(OSError):  # not granted: then as it is
                 os.nice(NICE)
-        os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
         ring, slot = Ring.open(folder / SNAPSHOTS), ByteSlot.open(folder / CAMERA, writable=True)
         users = RoadUsersRing(folder) if self.has_traffic else None
-        job = load_view_job(folder / VIEW_JOB)
-        picture = CameraPicture(windowless_context(), view_scene(job.drawing, job.limit_kmh, job.size), self.profile)
+        draw = drawn_camera(load_view_job(folder / VIEW_JOB), self.profile)
         drawn = -1
         while not stop():
             record = ring.latest() if ring.newest else None
@@ -56,7 +75,4 @@ class CameraWorker(Worker, frozen=True, kw_only=True):
                 continue
             drawn = due
             snapshot = snapshot_of(record, self.tick_hz)
-            shown = shown_vehicle(snapshot)
-            if users is not None:
-                shown = shown._replace(others=at_moment(users.newest(), shown.t_s, self.tick_hz))
-            slot.write(snapshot.tick, picture.jpeg(shown))
+            slot.write(snapshot.tick, draw(snapshot, NOBODY_AT_ALL if users is None else users.newest()))

@@ -2,7 +2,7 @@
 
 import hashlib
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -11,6 +11,7 @@ import msgspec
 
 from simconsole import __version__
 from simconsole.devices.force_feedback.aligning import shares_by_speed
+from simconsole.drivers.own_controller import NO_OWN_CODE, OwnCode
 from simconsole.processes.lifetimes import Interrupt, remove_half_made, undone
 from simconsole.processes.shared_memory import sweep
 from simconsole.profiles.files.loader import to_text
@@ -19,8 +20,10 @@ from simconsole.recording.bundles.bundle import SESSION_FILE, BundleWriter, add_
 from simconsole.recording.bundles.manifest import Manifest
 from simconsole.recording.bundles.provenance import NOTHING_GIVEN, Given
 from simconsole.recording.bundles.replay_bundle import sources_sha256
-from simconsole.recording.log_header import ACTS, ROAD_USERS, LogHeader, message_stream, vector_stream
+from simconsole.recording.log_header import ACTS, PLANS, ROAD_USERS, LogHeader, Stream, message_stream, vector_stream
+from simconsole.recording.own_signals import stream_of
 from simconsole.session.opening import Opened, open_headless, open_realtime
+from simconsole.session.paced import keeps_plans
 from simconsole.session.provenance import package_versions, provenance_at_start, with_devices
 from simconsole.session.seat import look_for_devices
 from simconsole.tick.advance import SETTINGS, Console, ConsoleState, advance
@@ -29,6 +32,8 @@ from simconsole.tick.loop import come_to_rest, run
 from simconsole.values.errors import RecordingError
 from simconsole.values.host.jit import compiled
 from simconsole.values.layout import read
+from simconsole.values.own_signals import OwnSignals
+from simconsole.values.planned_path import ENCODING as PLANS_ENCODING
 from simconsole.values.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE
 from simconsole.values.state_vector import INPUT_WIDTH, Snapshot, TickInputs
 from simconsole.world.traffic.road_users import ENCODING as ROAD_USERS_ENCODING
@@ -45,6 +50,7 @@ class DriveResult(NamedTuple):
     interrupted: bool
     summary: dict[str, Any]
     recording_failure: str | None = None
+    failure: BaseException | None = None  # what a lab's own code has raised: it ended the drive
 
 
 def drive(
@@ -53,11 +59,17 @@ def drive(
     watch: Callable[[Snapshot], bool] | None = None,
     on_bridge: Callable[[str], None] = lambda url: None,
     given: Given = NOTHING_GIVEN,
+    own: OwnCode = NO_OWN_CODE,
+    show: Callable[[Snapshot], None] = lambda snapshot: None,
 ) -> DriveResult:
-    """Drive a session into a new bundle in `folder`. `watch` sees every tick; True ends the drive.
+    """Drive a session into a new bundle in `folder`.
+
+    `watch` sees every tick; True ends the drive. `show` sees it again and again, the last of the ticks that are made at
+    once: who only looks on does not make a drive slower.
 
     `on_bridge` is told where the bridge of a paced drive listens, once it does. `given` is what whoever starts the
-    drive says of it; it is kept with the rest of its provenance before the first tick.
+    drive says of it; it is kept with the rest of its provenance before the first tick. `own` is a lab's own code,
+    called in a drive that is not paced.
 
     SIGINT, SIGTERM, SIGHUP and the driver who closes the window end it in order: the vehicle comes to rest in the log,
     torque goes off, the bundle is finished, then everything is closed. A second signal ends the process at once; before
@@ -74,23 +86,25 @@ def drive(
     ticks = ENDLESS_TICKS if duration_s is None else round(duration_s * console.tick_hz)
     with ExitStack() as stack:
         interrupt = stack.enter_context(Interrupt())
-        bundle = stack.enter_context(_bundle(resolved, console, folder, given))
+        bundle = stack.enter_context(_bundle(resolved, console, folder, given, own.signals))
         stack.enter_context(undone(lambda: remove_half_made(folder)))
-        opened = _open(resolved, console, bundle, interrupt, stack)
+        opened = _open(resolved, console, bundle, interrupt, stack, own)
         if opened.bridge_url is not None:
             on_bridge(opened.bridge_url)
         began_s = time.monotonic()
+
+        def finished(snapshot: Snapshot) -> bool:
+            """Show the drive as far as it is; return whether somebody or something ends it."""
+            show(snapshot)
+            ends = interrupt.raised or opened.left() or (watch is not None and watch(snapshot))
+            return ends or opened.finished(snapshot)
+
         state = run(
             console,
             state,
             opened.components,
             ticks,
-            lambda snapshot: (
-                interrupt.raised
-                or opened.left()
-                or (watch is not None and watch(snapshot))
-                or opened.finished(snapshot)
-            ),
+            finished,
             on_request=resolved.session.mode.start == "on_request",
             at_once=watch is None,
         )
@@ -112,6 +126,7 @@ def drive(
         interrupted=interrupt.raised,
         summary=summary,
         recording_failure=manifest.recording_failure,
+        failure=opened.failure(),
     )
 
 
@@ -121,12 +136,17 @@ def warm_up(console: Console, state: ConsoleState) -> None:
 
 
 def _open(
-    resolved: ResolvedSession, console: Console, bundle: BundleWriter, interrupt: Interrupt, stack: ExitStack
+    resolved: ResolvedSession,
+    console: Console,
+    bundle: BundleWriter,
+    interrupt: Interrupt,
+    stack: ExitStack,
+    own: OwnCode,
 ) -> Opened:
     if resolved.session.mode.pacing == "realtime":
         opened = open_realtime(resolved, console, bundle.log, bundle.folder, interrupt, stack)
     else:
-        opened = open_headless(resolved, console, bundle.log, bundle.folder, interrupt, stack)
+        opened = open_headless(resolved, console, bundle.log, bundle.folder, interrupt, stack, own)
     interrupt.check()
     if opened.identities:
         bundle.extend_provenance(with_devices(bundle.manifest.provenance, opened.identities))
@@ -141,14 +161,36 @@ def _list_what_workers_wrote(folder: Path, manifest: Manifest) -> None:
         add_export(folder, *unlisted(folder, manifest))
 
 
-def _bundle(resolved: ResolvedSession, console: Console, folder: Path, given: Given) -> BundleWriter:
-    world, maps = (None, {}) if resolved.world is None else enclosed(resolved.world)
-    text = to_text(msgspec.structs.replace(resolved, world=world))
+def _bundle(
+    resolved: ResolvedSession, console: Console, folder: Path, given: Given, signals: OwnSignals | None
+) -> BundleWriter:
     traffic = resolved.session.environment.traffic is not None
     road_users = (message_stream(ROAD_USERS, ROAD_USERS_ENCODING),) if traffic else ()
+    plans = (message_stream(PLANS, PLANS_ENCODING),) if keeps_plans(resolved.session) else ()
+    own = () if signals is None else (stream_of(signals),)
+    return new_bundle(resolved, console, folder, given, (message_stream(ACTS), *road_users, *plans, *own))
+
+
+def new_bundle(
+    resolved: ResolvedSession, console: Console, folder: Path, given: Given, messages: Sequence[Stream]
+) -> BundleWriter:
+    """Begin the bundle of a drive: its session in full, its provenance, an open log.
+
+    Args:
+        resolved: the session.
+        console: the console that it makes.
+        folder: new, or empty.
+        given: what whoever starts the drive says of it.
+        messages: the log's streams beside that of the state vectors.
+
+    Raises:
+        RecordingError: it cannot be written, or something given is too long.
+    """
+    world, maps = (None, {}) if resolved.world is None else enclosed(resolved.world)
+    text = to_text(msgspec.structs.replace(resolved, world=world))
     header = LogHeader(
         tick_hz=console.tick_hz,
-        streams=(vector_stream(console.columns, INPUT_WIDTH), message_stream(ACTS), *road_users),
+        streams=(vector_stream(console.columns, INPUT_WIDTH), *messages),
         console_version=__version__,
         source_sha256=sources_sha256(console),
         session_sha256=hashlib.sha256(text.encode()).hexdigest(),

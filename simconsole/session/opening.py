@@ -9,16 +9,19 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from simconsole.bridge.link.delay import over_link
 from simconsole.control.requests.refusals import steering_limit
+from simconsole.drivers.own_controller import NO_OWN_CODE, OwnCode, OwnParts
 from simconsole.faults.schedule import with_faults
 from simconsole.processes.lifetimes import Interrupt, end, tell_to_end, undone
+from simconsole.processes.receipts import latencies_of
 from simconsole.processes.shared_memory import make_run_folder, remove_run_folder
 from simconsole.processes.supervisor import SupervisorHandle
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.session import SessionProfile
 from simconsole.recording.bundles.log import LogWriter
 from simconsole.session.autopilot_program import PROGRAM_END_S, new_nonce, own_token, start_autopilot
-from simconsole.session.lockstep import STAND_S, LockstepLink
+from simconsole.session.lockstep import STAND_S, LockstepLink, LockstepServer
 from simconsole.session.paced import (
+    PLAN_HZ,
     CommandPort,
     Memory,
     add_can_memory,
@@ -26,9 +29,9 @@ from simconsole.session.paced import (
     bridge_summary,
     can_summary,
     make_memory,
+    share_plans,
     share_road_users,
     wait_for_can,
-    worker_latencies,
     worker_specs,
 )
 from simconsole.session.pacing import Pacer, UnpacedPacer, realtime_hints
@@ -36,8 +39,10 @@ from simconsole.session.preconditions import check_address, check_commander, che
 from simconsole.session.recorder import LogRecorder
 from simconsole.session.seat import open_seating
 from simconsole.session.traffic_source import TrafficSource, open_traffic
+from simconsole.session.worker_programs import LATENCY
 from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession
+from simconsole.tick.collision_end import CollisionEnd
 from simconsole.tick.isolation import isolated
 from simconsole.tick.loop import Components, Standby
 from simconsole.values.errors import BridgeError, ProfileError
@@ -68,7 +73,9 @@ class Opened(NamedTuple):
     identities: tuple[DeviceIdentity, ...] = ()
     """Of the cockpit's devices."""
     left: Callable[[], bool] = lambda: False
-    """Whether the driver has closed the window: the drive ends in order, as by a signal."""
+    """Whether the driver has closed the window, or the drive cannot go on: it ends in order, as by a signal."""
+    failure: Callable[[], BaseException | None] = lambda: None
+    """What a lab's own code has raised; it has ended the drive."""
 
 
 def open_headless(
@@ -78,8 +85,11 @@ def open_headless(
     bundle: Path,
     interrupt: Interrupt,
     stack: ExitStack,
+    own: OwnCode = NO_OWN_CODE,
 ) -> Opened:
     """Open a drive that runs as fast as it can, all of it in this process. A raised `interrupt` ends all waiting.
+
+    A controller of `own` drives in the place of whoever the session names, as in lockstep.
 
     Raises:
         ProfileError: the session needs lockstep for what it asks.
@@ -97,8 +107,12 @@ def open_headless(
     counters: Callable[[], dict[str, Any]] = dict
     of_can: Callable[[], dict[str, Any]] = dict
     take_acts: Callable[[], list[bytes]] = list
-    traffic = open_traffic(resolved, console)
-    if resolved.session.mode.pacing == "lockstep":
+    traffic, unpushable = open_traffic(resolved, console), CollisionEnd(console.platform)
+    parts = OwnParts(own, resolved.session.mode.control_period_ticks)
+    if parts.controller is not None:
+        link = _lockstep_link(parts.controller, resolved.session, interrupt)
+        commands, outputs, counters = _over_link(link, resolved, console), (link,), link.counters
+    elif resolved.session.mode.pacing == "lockstep":
         link = _open_lockstep(resolved, console, bundle, interrupt, stack, traffic)
         commands, outputs, standby = _over_link(link, resolved, console), (link,), (link.stand,)
         counters, take_acts = link.counters, link.take_acts
@@ -110,13 +124,15 @@ def open_headless(
     can = _open_can(resolved, console, bundle, stack)
     if can is not None:
         outputs, of_can = (*outputs, can), can.summary
+    if parts.observer is not None:
+        outputs = (*outputs, parts.observer)
     seating = open_seating(resolved, console, stack)
-    recorder = LogRecorder(log, take_acts, traffic)
+    recorder = LogRecorder(log, take_acts, traffic, own.signals)
     components = Components(
         devices=seating.devices,
         commands=commands,
         recorder=recorder,
-        outputs=(*seating.outputs, *_outputs_of(traffic), *outputs),
+        outputs=(*seating.outputs, *_outputs_of(traffic), *unpushable.outputs, *outputs),
         pace=pace,
         seat=seating.seat,
         ecu=can or NobodyCommands(),
@@ -129,9 +145,17 @@ def open_headless(
 
     def summary() -> dict[str, Any]:
         own = {**counters(), **of_can(), **recorder.acts_summary(), **_summary_of(traffic)}
+        own |= unpushable.summary()
         return {**pace.summary(), **own, "latency_us": latencies.summary_us()}
 
-    return Opened(components, seating.finished, summary, identities=seating.identities)
+    return Opened(
+        components,
+        lambda snapshot: parts.ended(snapshot) or seating.finished(snapshot),
+        summary,
+        identities=seating.identities,
+        left=unpushable.ended,
+        failure=lambda: parts.failure,
+    )
 
 
 def open_realtime(
@@ -162,8 +186,9 @@ def open_realtime(
     opening = stack.enter_context(ExitStack())
     opening.enter_context(undone(lambda: remove_run_folder(folder)))
     memory = make_memory(folder, console)
-    traffic = open_traffic(resolved, console)
-    recorder = LogRecorder(log, memory.acts.take, traffic)
+    traffic, unpushable = open_traffic(resolved, console), CollisionEnd(console.platform)
+    plans = share_plans(resolved.session, folder)
+    recorder = LogRecorder(log, memory.acts.take, traffic, plans)
     if traffic is not None:
         share_road_users(traffic, folder)
     ecu = add_can_memory(resolved, console, folder)
@@ -182,7 +207,7 @@ def open_realtime(
             devices=seating.devices,
             commands=memory.commands,
             recorder=recorder,
-            outputs=(*seating.outputs, *_outputs_of(traffic), memory.snapshots, supervisor),
+            outputs=(*seating.outputs, *_outputs_of(traffic), *unpushable.outputs, memory.snapshots, supervisor),
             pace=pace,
             seat=seating.seat,
             ecu=ecu,
@@ -192,9 +217,10 @@ def open_realtime(
     )._replace(latencies=latencies)
 
     def summary() -> dict[str, Any]:
-        latency = {**latencies.summary_us(), **worker_latencies(folder)}
+        latency = {**latencies.summary_us(), **latencies_of(folder, LATENCY)}
         workers = {"station_restarts": supervisor.counters(), **bridge_summary(folder), **can_summary(folder)}
-        own = {**recorder.acts_summary(), **_summary_of(traffic), "latency_us": latency, "not_granted": missing}
+        own = {**recorder.acts_summary(), **_summary_of(traffic), **unpushable.summary()}
+        own |= {"latency_us": latency, "not_granted": missing}
         return {**pace.summary(), **workers, **own}
 
     return Opened(
@@ -203,7 +229,7 @@ def open_realtime(
         summary=summary,
         bridge_url=address,
         identities=seating.identities,
-        left=memory.keys.ended,
+        left=lambda: memory.keys.ended() or unpushable.ended(),
     )
 
 
@@ -258,9 +284,9 @@ def _await_workers(
 
     address, bridge = None, session.outputs.bridge
     if bridge is not None:
-        address = bridge_address(folder, alive)
+        address = bridge_address(folder, lambda: alive() and not supervisor.counters().get("bridge"))
         if session.features.autopilot is not None:
-            programs.append(start_autopilot(address, session, bridge, *credentials))
+            programs.append(start_autopilot(address, session, bridge, *credentials, plan_hz=PLAN_HZ))
     if session.outputs.can is not None:
         wait_for_can(folder, lambda: alive() and not supervisor.counters().get("canbus"))
     return address
@@ -289,15 +315,13 @@ def _open_lockstep(
     session = resolved.session
     if session.outputs.bridge is None:
         raise ProfileError("outputs.bridge: value missing: a bridge, where mode.pacing is lockstep")
-    period_ticks = session.mode.control_period_ticks
     token, drive = own_token(session), new_nonce()
-    odometry_hz = console.tick_hz / period_ticks
     view = NO_VIEW
     if session.outputs.bridge.external_view:
         view = external_view(view_job(resolved), display_settings(resolved))
     bridge = LockstepBridge(
         session.outputs.bridge,
-        odometry_hz=odometry_hz,
+        odometry_hz=session.mode.control_hz,
         folder=folder,
         drive=drive,
         around=Surroundings(
@@ -318,7 +342,12 @@ def _open_lockstep(
     if program is not None:
         stack.callback(tell_to_end, [program])
     _wait_for_controller(bridge, program, session.mode.wait_for_controller_s, interrupt.check)
-    return LockstepLink(bridge, period_ticks, session.mode.answer_timeout_s, lambda: interrupt.raised)
+    return _lockstep_link(bridge, session, interrupt)
+
+
+def _lockstep_link(server: LockstepServer, session: SessionProfile, interrupt: Interrupt) -> LockstepLink:
+    mode = session.mode
+    return LockstepLink(server, mode.control_period_ticks, mode.answer_timeout_s, lambda: interrupt.raised)
 
 
 def _open_bag(session: SessionProfile, console: Console, stack: ExitStack) -> "BagCommands":

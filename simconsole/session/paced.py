@@ -9,13 +9,14 @@ import msgspec
 
 from simconsole.bridge.console.operator_acts import ACT_BYTES, ACTS_MAX
 from simconsole.control.requests.refusals import steering_limit
-from simconsole.processes.byte_slot import ByteSlot
+from simconsole.processes.byte_slot import ByteSlot, Piece
 from simconsole.processes.shared_memory import EventCounters, Ring, TextQueue
 from simconsole.processes.worker import Worker, WorkerSpec
+from simconsole.profiles.session import SessionProfile
 from simconsole.profiles.vehicle import TurtlebotProfile
+from simconsole.recording.log_header import PLANS
 from simconsole.session.camera_worker import CameraWorker
 from simconsole.session.external_view import display_settings
-from simconsole.session.scene_job import LIVE_SCENE, scene_job
 from simconsole.session.traffic_source import TrafficSource
 from simconsole.session.view_job import save_view_job, view_job
 from simconsole.session.worker_programs import (
@@ -29,10 +30,9 @@ from simconsole.session.worker_programs import (
     COUNTS,
     EVENTS,
     KEY_CODES,
-    LATENCY,
+    PLAN,
     ROAD_USERS,
     ROAD_USERS_CAPACITY,
-    SCENE_JOB,
     SLOT_CAPACITY,
     SNAPSHOT_CAPACITY,
     SNAPSHOTS,
@@ -40,7 +40,6 @@ from simconsole.session.worker_programs import (
     BridgeWorker,
     CanWorker,
     HudWorker,
-    SceneWorker,
     command_of,
 )
 from simconsole.tick.advance import Console
@@ -48,13 +47,17 @@ from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import BridgeError, CanError
 from simconsole.values.key_codes import Key
 from simconsole.values.latency import Hop
+from simconsole.values.planned_path import MOST_BYTES
 from simconsole.values.protocols import CommandSource, NobodyCommands
 from simconsole.values.signals import NEVER_TICKS, NO_COMMAND, EventInput, RemoteCommand
 from simconsole.values.state_vector import LAYOUT, Snapshot
 from simconsole.values.units import NS_PER_S
 from simconsole.world.traffic.road_users import RECORD_WIDTH, to_record
 
-START_PATIENCE_S = 20.0
+START_PATIENCE_S = 60.0
+"""How long a worker may take to be ready: a machine that is busy, and compiles for the first time, takes this long."""
+PLAN_HZ = 5.0
+"""How often the session's own autopilot is asked to tell what it plans."""
 JPEG_BYTES_PER_PX = 3
 """No JPEG is longer than the picture itself, but for noise."""
 
@@ -187,6 +190,36 @@ def share_road_users(traffic: TrafficSource, folder: Path) -> None:
     traffic.show_to(lambda at: ring.write(to_record(at.users), at.tick))
 
 
+def keeps_plans(session: SessionProfile) -> bool:
+    """Return whether a drive keeps what controllers plan: where operators watch, and nobody waits for an answer."""
+    return session.mode.pacing == "realtime" and session.outputs.bridge is not None
+
+
+class PlanSource:
+    """The newest plan, for the log."""
+
+    def __init__(self, slot: ByteSlot) -> None:
+        self._slot = slot
+        self._taken: Piece | None = None
+
+    def take_messages(self) -> list[tuple[str, bytes]]:
+        """Return the newest plan, if nobody has taken it yet."""
+        piece = self._slot.newest()
+        if piece is None or piece is self._taken:
+            return []
+        self._taken = piece
+        return [(PLANS, piece.content)]
+
+
+def share_plans(session: SessionProfile, folder: Path) -> PlanSource | None:
+    """Make the memory through which plans come; None where the drive keeps none.
+
+    Raises:
+        WorkerError: it cannot be made.
+    """
+    return PlanSource(ByteSlot.create(folder / PLAN, MOST_BYTES)) if keeps_plans(session) else None
+
+
 def worker_specs(
     resolved: ResolvedSession, console: Console, folder: Path, bundle: Path, drive: str
 ) -> list[WorkerSpec]:
@@ -241,11 +274,14 @@ def worker_specs(
             profile=outputs.sound, settings=settings, tick_hz=tick_hz, has_traffic=has_traffic
         )
     if outputs.scene is not None:
-        from simconsole.scene.viewer.job import save_job
+        from simconsole.session.scene_worker import LIVE_SCENE, SceneWorker, scene_source
 
-        save_job(folder / SCENE_JOB, scene_job(resolved, console.columns, tick_hz))
-        path = str((bundle / LIVE_SCENE).absolute())
-        workers["scene"] = SceneWorker(path=path, tick_hz=tick_hz, has_bridge=has_bridge, has_traffic=has_traffic)
+        workers["scene"] = SceneWorker(
+            path=str((bundle / LIVE_SCENE).absolute()),
+            source=scene_source(resolved, console.columns, tick_hz),
+            has_bridge=has_bridge,
+            has_traffic=has_traffic,
+        )
     return [WorkerSpec.of(name, worker) for name, worker in workers.items()]
 
 
@@ -253,40 +289,35 @@ def bridge_address(folder: Path, alive: Callable[[], bool], patience_s: float = 
     """Wait until the bridge worker listens and return its address.
 
     Raises:
-        BridgeError: it does not listen in time.
+        BridgeError: it does not, or not in time.
     """
-    deadline_s = time.monotonic() + patience_s
-    while alive() and time.monotonic() < deadline_s:
-        if (folder / ADDRESS).exists():
-            return (folder / ADDRESS).read_text("utf-8")
-        time.sleep(0.02)
-    raise BridgeError("the bridge does not listen; its own message stands above")
+    missing = _why_missing(folder / ADDRESS, alive, patience_s)
+    if missing:
+        raise BridgeError(f"the bridge does not listen{missing}")
+    return (folder / ADDRESS).read_text("utf-8")
 
 
 def wait_for_can(folder: Path, alive: Callable[[], bool], patience_s: float = START_PATIENCE_S) -> None:
     """Wait until the CAN worker has opened its bus.
 
     Raises:
-        CanError: it does not in time.
+        CanError: it does not, or not in time.
     """
+    missing = _why_missing(folder / CAN_STATUS, alive, patience_s)
+    if missing:
+        raise CanError(f"the CAN bus is not open{missing}")
+
+
+def _why_missing(path: Path, alive: Callable[[], bool], patience_s: float) -> str:
+    """Wait until a worker has written a file; return why it has not, empty where it has."""
     deadline_s = time.monotonic() + patience_s
-    while alive() and time.monotonic() < deadline_s:
-        if (folder / CAN_STATUS).exists():
-            return
+    while not path.exists():
+        if not alive():
+            return "; the worker's own message stands above"
+        if time.monotonic() >= deadline_s:
+            return f" within {patience_s:g} s"
         time.sleep(0.02)
-    raise CanError("the CAN bus is not open; the worker's own message stands above")
-
-
-def worker_latencies(folder: Path) -> dict[str, Any]:
-    """Return the workers' newest latency statistics, at most a second old, by hop and worker: `receive, hud`."""
-    found = {}
-    for name in ("bridge", "canbus", "hud"):
-        try:
-            pages = msgspec.json.decode((folder / f"{LATENCY}.{name}.json").read_bytes(), type=dict[str, Any])
-        except (OSError, msgspec.DecodeError):
-            continue
-        found.update({f"{hop}, {name}": page for hop, page in pages.items()})
-    return found
+    return ""
 
 
 def bridge_summary(folder: Path) -> dict[str, Any]:

@@ -43,7 +43,9 @@ def check_links(session: SessionProfile) -> None:
 
 
 def check_address(profile: BridgeProfile) -> None:
-    """Listen briefly on the bridge's port: one in use is one error now, not a worker that fails at each restart.
+    """Take the bridge's port for a moment: one in use is one error now, not a worker that fails at each restart.
+
+    It does not listen there: a client that came just then would be cut off.
 
     Raises:
         BridgeError: it cannot listen there, or what it needs is not installed.
@@ -51,8 +53,8 @@ def check_address(profile: BridgeProfile) -> None:
     """
     from simconsole.bridge.ros2.node import check
     from simconsole.bridge.transport.message_files import load_registry
-    from simconsole.bridge.transport.sockets import listen
+    from simconsole.bridge.transport.sockets import bind
 
     load_registry(profile)
     check(profile)
-    listen(profile.host, profile.port).close()
+    bind(profile.host, profile.port).close()

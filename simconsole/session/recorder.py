@@ -19,20 +19,20 @@ class MessageSource(Protocol):
     def take_messages(self) -> list[tuple[str, bytes]]:
         """Return the messages since the last call, each with the name of its stream."""
 
-    def take_events(self) -> int:
-        """Return the events (mask) since the last call, which the next tick brings."""
-
 
 class LogRecorder:
     """Logs every tick, and raises an alarm in every tick after the log has failed."""
 
     def __init__(
-        self, log: LogWriter, take_acts: Callable[[], list[bytes]] = list, traffic: MessageSource | None = None
+        self, log: LogWriter, take_acts: Callable[[], list[bytes]] = list, *sources: MessageSource | None
     ) -> None:
-        """Write to `log`; `take_acts` returns the operator's acts since its last call, each as JSON."""
+        """Write to `log`; `take_acts` returns the operator's acts since its last call, each as JSON.
+
+        The `sources` are traffic and a lab's own signals, where there are any.
+        """
         self._log = log
         self._take_acts = take_acts
-        self._traffic = traffic
+        self._sources = [source for source in sources if source is not None]
         self._summary = ActsSummary()
 
     def write(self, snapshot: Snapshot) -> int:
@@ -54,15 +54,15 @@ class LogRecorder:
         return kept, self._events()
 
     def _events(self) -> int:
-        raised = 0 if self._traffic is None else self._traffic.take_events()
-        return raised if self._log.failure is None else raised | _RECORDING_FAILED
+        return 0 if self._log.failure is None else _RECORDING_FAILED
 
     def _messages(self) -> list[tuple[str, bytes]]:
         """Return what the coming tick brings with it."""
         acts = self._take_acts()
         for act in acts:
             self._summary.add(act)
-        return [*((ACTS, act) for act in acts), *(() if self._traffic is None else self._traffic.take_messages())]
+        others = (message for source in self._sources for message in source.take_messages())
+        return [*((ACTS, act) for act in acts), *others]
 
     def _note(self, error: Exception) -> None:
         self._log.failure = self._log.failure or f"{type(error).__name__}: {error}"

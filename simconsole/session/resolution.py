@@ -1,18 +1,21 @@
 """From a session's name to a resolved session: every profile it names, read and checked."""
 
 import math
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Final
+from typing import Any, Final, TypeVar
 
 import msgspec
 
+from simconsole.hud.phrases import check_language
 from simconsole.profiles.device import CockpitProfile, ScriptProfile
 from simconsole.profiles.files.loader import find, load
 from simconsole.profiles.files.vehicle_files import load_vehicle
 from simconsole.profiles.files.world_files import load_world
 from simconsole.profiles.scenario import ScenarioProfile
-from simconsole.profiles.session import PROFILE_FILES, SessionProfile, Start
-from simconsole.profiles.validation import convert
+from simconsole.profiles.session import SessionProfile, Start
+from simconsole.profiles.validation import PROFILE_FILES, convert
+from simconsole.profiles.view import HudProfile, LanguageProfile
 from simconsole.profiles.world import WorldProfile
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import ProfileError
@@ -26,10 +29,14 @@ _NAMED: Final = (
     ("devices", "cockpit"),
 )
 """Keys of a session that name another profile."""
+_PROFILES: Final = ("vehicle", "cockpit", "world")
+_SECTIONS: Final = SessionProfile.__struct_fields__
+
+T = TypeVar("T")
 
 
-def resolve(session: SessionProfile, cockpit: str | None = None) -> ResolvedSession:
-    """Return the session with the profiles it names; `cockpit` (a name or a file) takes the place of its own.
+def resolve(session: SessionProfile, cockpit: str | None = None, language: str | None = None) -> ResolvedSession:
+    """Return the session with the profiles it names; `cockpit` and `language` (names or files) replace its own.
 
     Raises:
         ProfileError: one of them is missing or wrong; names its file, key, value and range.
@@ -40,7 +47,19 @@ def resolve(session: SessionProfile, cockpit: str | None = None) -> ResolvedSess
         cockpit=load("devices", cockpit or session.devices.cockpit, CockpitProfile),
         vehicle=load_vehicle(session.scenario.vehicle),
         world=world,
+        language=language_of(language or (session.outputs.hud or HudProfile()).language),
     )
+
+
+def language_of(name_or_path: str) -> LanguageProfile:
+    """Return the language of that name or file.
+
+    Raises:
+        ProfileError: missing or wrong, or it names a phrase that the display never says.
+    """
+    language = load("languages", name_or_path, LanguageProfile)
+    check_language(language, str(find("languages", name_or_path)))
+    return language
 
 
 def _started(session: SessionProfile, world: WorldProfile) -> SessionProfile:
@@ -93,6 +112,66 @@ def override(session: SessionProfile, **sections: dict[str, object]) -> SessionP
     return convert(plain, SessionProfile, "command line")
 
 
+def headless(session: SessionProfile) -> SessionProfile:
+    """Return `session` as a drive without a window and without a clock; one in lockstep stays in lockstep."""
+    pacing = "free" if session.mode.pacing == "realtime" else session.mode.pacing
+    return override(session, outputs={"hud": None}, mode={"pacing": pacing})
+
+
+def parted(values: Mapping[str, object]) -> tuple[dict[str, object], dict[str, object]]:
+    """Return the values of a session's own keys, and those of the profiles that it names.
+
+    A key is dotted (`environment.friction`). One of another profile begins with `vehicle`, `cockpit` or `world`; what
+    begins with none of these and with no section of a session is a key of the vehicle (`body.mass_kg`).
+    """
+    of_session = {key: value for key, value in values.items() if key.partition(".")[0] in _SECTIONS}
+    return of_session, {key: value for key, value in values.items() if key not in of_session}
+
+
+def with_session_values(session: SessionProfile, values: Mapping[str, object], origin: str) -> SessionProfile:
+    """Return `session` with the values of these dotted keys; `origin` opens an error.
+
+    Raises:
+        ProfileError: no such key, or a value out of its bounds.
+    """
+    return _with_values(session, SessionProfile, values, origin)
+
+
+def with_named_values(resolved: ResolvedSession, values: Mapping[str, object], origin: str) -> ResolvedSession:
+    """Return `resolved` with values in the profiles that its session names; keys as of `parted`.
+
+    Raises:
+        ProfileError: no such profile or key, or a value out of its bounds.
+    """
+    grouped: dict[str, dict[str, object]] = {}
+    for key, value in values.items():
+        first, _, rest = key.partition(".")
+        name, inner = (first, rest) if first in _PROFILES else ("vehicle", key)
+        grouped.setdefault(name, {})[inner] = value
+    for name, inside in grouped.items():
+        profile = getattr(resolved, name)
+        if profile is None:
+            raise ProfileError(f"{origin}: {name}: the session has none")
+        changed: dict[str, object] = {name: _with_values(profile, type(profile), inside, f"{origin}: {name}")}
+        resolved = msgspec.structs.replace(resolved, **changed)
+    return resolved
+
+
+def _with_values(profile: object, struct: type[T], values: Mapping[str, object], origin: str) -> T:
+    plain = msgspec.to_builtins(profile)
+    for key, value in values.items():
+        *way, last = key.split(".")
+        at = plain
+        for step in way:
+            if at.get(step) is None:
+                at[step] = {}  # an empty section, or an unknown key, which `convert` names
+            at = at[step]
+            if not isinstance(at, dict):
+                raise ProfileError(f"{origin}: {key}: {step} has no keys of its own")
+        at[last] = value
+    return convert(plain, struct, origin)
+
+
 def _files_beside(session: SessionProfile, path: Path) -> SessionProfile:
     """Return `session` with whole paths of its script or trace and its message types."""
     kind, _, name = session.devices.driver.partition(":")
@@ -108,7 +187,23 @@ def _files_beside(session: SessionProfile, path: Path) -> SessionProfile:
         beside = _beside(path, "outputs.bridge.messages", bridge.messages, bridge.messages)
         changed = {**msgspec.to_builtins(bridge), "messages": str(beside)}
         session = override(session, outputs={"bridge": changed})
+    hud = session.outputs.hud
+    if hud is not None:
+        session = override(session, outputs={"hud": _display_files_beside(hud, path)})
     return _profiles_beside(session, path)
+
+
+def _display_files_beside(hud: HudProfile, path: Path) -> dict[str, object]:
+    """Return the plain values of `hud` with whole paths of its language and its models."""
+    plain: dict[str, Any] = msgspec.to_builtins(hud)
+    if hud.language.endswith(PROFILE_FILES):
+        plain["language"] = str(_beside(path, "outputs.hud.language", hud.language, hud.language))
+    view = plain["view"] or {}
+    named = [("models", model) for model in view.get("models", ())]
+    for key, model in (("vehicle_model", view.get("vehicle_model")), *named):
+        if model is not None:
+            model["file"] = str(_beside(path, f"outputs.hud.view.{key}.file", model["file"], model["file"]))
+    return plain
 
 
 def _profiles_beside(session: SessionProfile, path: Path) -> SessionProfile:

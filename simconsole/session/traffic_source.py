@@ -11,14 +11,14 @@ from simconsole.values.errors import ProfileError
 from simconsole.values.host.jit import compiled
 from simconsole.values.latency import Hop
 from simconsole.values.platform import Platform
-from simconsole.values.signals import AheadInput, Event, VehicleState
+from simconsole.values.signals import AheadInput, ImpactInput, VehicleState
 from simconsole.values.state_vector import Snapshot
 from simconsole.values.trigonometry import direction
 from simconsole.world.kinds.worlds import open_map, open_world
 from simconsole.world.roads.road_world import roads_of
 from simconsole.world.route import Route
 from simconsole.world.rules.owing import Owing
-from simconsole.world.traffic.collisions import struck
+from simconsole.world.traffic.crashes import NO_CRASH, Crashes
 from simconsole.world.traffic.leader import Leaders
 from simconsole.world.traffic.road_users import Box, RoadUsersAt, to_bytes
 from simconsole.world.traffic.traffic import Traffic
@@ -44,15 +44,14 @@ class TrafficSource:
     ) -> None:
         """Take what the vehicle follows as `route`; without one it goes straight on, and `owing` tells nothing."""
         self._traffic = traffic
-        self._leaders = Leaders(route, compiled)
+        self._leaders, self._crashes = Leaders(route, compiled), Crashes(platform.solid, compiled)
         self._platform = platform
         self._period_ticks = period_ticks
         self._owing = owing
         self._newest = RoadUsersAt(0, traffic.road_users())
         self._ahead = self._look(ego_box(platform.initial_vehicle, platform), 0)
         self._fresh = True
-        self._touched: frozenset[float] = frozenset()
-        self._events = 0
+        self._crash = NO_CRASH
         self._shown: list[ShowRoadUsers] = []
         self.collisions = 0
 
@@ -73,11 +72,10 @@ class TrafficSource:
         self._newest = RoadUsersAt(snapshot.tick, self._traffic.step(ego))
         self._fresh = True
         self._ahead = self._look(ego, snapshot.tick)
-        touched = frozenset(user.id for user in struck(ego, self._newest.users))
-        if touched - self._touched:
-            self._events |= int(Event.COLLISION)
-            self.collisions += len(touched - self._touched)
-        self._touched = touched
+        self._crash = self._crashes.step(snapshot.vehicle, ego, self._newest.users)
+        self.collisions += len(self._crash.new)
+        for number, change_mps in self._crash.pushed:
+            self._traffic.push(number, change_mps)
         for show in self._shown:
             show(self._newest)
 
@@ -90,7 +88,7 @@ class TrafficSource:
         if self._owing is None:
             return found
         owed = self._owing.owed(ego, self._newest.users, tick)
-        return found._replace(yield_m=owed.yield_m, yield_s=owed.yield_s)
+        return AheadInput(found.lead_gap_m, found.lead_speed_mps, owed.yield_m, owed.yield_s)
 
     def unseen(self, tick: int) -> int:
         """Return how many ticks, from `tick` on, do not end a period."""
@@ -101,10 +99,10 @@ class TrafficSource:
         fresh, self._fresh = self._fresh, False
         return [(ROAD_USERS, to_bytes(self._newest.users))] if fresh else []
 
-    def take_events(self) -> int:
-        """Return what happened since the last call."""
-        events, self._events = self._events, 0
-        return events
+    def take_impact(self) -> ImpactInput:
+        """Return what a collision of the last step has done to the vehicle, once."""
+        impact, self._crash = self._crash.impact, NO_CRASH
+        return impact
 
     def summary(self) -> dict[str, Any]:
         """Return what the drive's summary says of traffic."""
@@ -135,6 +133,7 @@ def open_traffic(resolved: ResolvedSession, console: Console) -> TrafficSource |
         compiled,
         route=route,
         ego=ego_box(platform.initial_vehicle, platform),
+        ground=world.ground,
     )
     owing = None if roads is None else Owing(roads.road_map, roads.legs, route, console.tick_hz)
     return TrafficSource(traffic, platform, profile.period_ms * console.tick_hz // 1000, route, owing)

@@ -4,7 +4,7 @@ A worker's fields are its whole configuration; `simconsole.processes.worker` bri
 """
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -26,9 +26,10 @@ from simconsole.profiles.world import WorldProfile
 from simconsole.values.host.files import write_atomically
 from simconsole.values.kernels import Row
 from simconsole.values.labels import LINK_DOWN
+from simconsole.values.planned_path import PlannedPath, to_bytes
 from simconsole.values.signals import RemoteCommand
 from simconsole.values.state_vector import LAYOUT, Snapshot
-from simconsole.world.traffic.road_users import NOBODY, RoadUsersAt, from_record
+from simconsole.world.traffic.road_users import NOBODY_AT_ALL, RoadUsersAt, from_record
 
 if TYPE_CHECKING:
     from simconsole.bridge.console.camera_topics import ReadCamera
@@ -47,9 +48,9 @@ CAN_EVENTS: Final = "can.events"
 CAN_STATUS: Final = "can.json"
 ROAD_USERS: Final = "road_users"
 LATENCY: Final = "latency"
-SCENE_JOB: Final = "scene.npz"
 VIEW_JOB: Final = "view.npz"
 CAMERA: Final = "camera"
+PLAN: Final = "plan"
 SNAPSHOT_CAPACITY: Final = 1024
 SLOT_CAPACITY: Final = 4
 ROAD_USERS_CAPACITY: Final = 64
@@ -113,6 +114,11 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
             url = address_url(profile.host, port, profile.certificate is not None)
             write_atomically(folder / ADDRESS, url, durable=False)
 
+        plans = ByteSlot.open(folder / PLAN, writable=True)
+
+        def keep_plan(plan: PlannedPath) -> None:
+            plans.write(plan.t_ns, to_bytes(plan))
+
         def write_counts(counts: dict[str, int]) -> None:
             write_atomically(folder / COUNTS, msgspec.json.encode(counts), durable=False)
 
@@ -123,6 +129,7 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
             profile, snapshots, command_writer(folder / COMMAND), events.raise_events, stop,
             on_ready=ready, on_act=keep_act, on_counts=write_counts, on_link_state=write_link_state,
             folder=Path(self.bundle), drive=self.drive, around=around,
+            on_plan=keep_plan,
         )  # fmt: skip
 
 
@@ -203,7 +210,8 @@ class HudWorker(Worker, frozen=True, kw_only=True):
                 return None
             older, newer = (snapshot_of(record, self.tick_hz) for record in records[-2:])
             age_s = 1e-9 * (time.monotonic_ns() - records[-1].second_stamp)
-            return Motion(older, newer, age_s, None if road_users is None else road_users.newest())
+            before, now = (None, None) if road_users is None else road_users.newest_two()
+            return Motion(older, newer, age_s, now, before)
 
         def report_keys(mask: int) -> None:
             keys.write(np.array([float(mask)]), time.monotonic_ns())
@@ -216,36 +224,6 @@ class HudWorker(Worker, frozen=True, kw_only=True):
         run(ports, self.profile, self.settings, partial(open_window, scene=scene), memory)
 
 
-class SceneWorker(Worker, frozen=True, kw_only=True):
-    """Records the scene with rerun; the course lies in the run folder."""
-
-    path: str
-    """The .rrd file."""
-    tick_hz: int
-    has_bridge: bool
-    has_traffic: bool = False
-
-    def run(self, folder: Path, stop: Callable[[], bool]) -> None:
-        """Record until `stop`."""
-        from simconsole.scene.viewer.follow import Ports, follow
-        from simconsole.scene.viewer.job import load_job
-
-        ring = Ring.open(folder / SNAPSHOTS)
-        seen = ring.newest
-
-        def new_ticks() -> Sequence[Snapshot]:
-            nonlocal seen
-            records = ring.since(seen)
-            if records:
-                seen = records[-1].number
-            return [snapshot_of(record, self.tick_hz) for record in records]
-
-        link = LinkWatch(folder / LINK_STATUS, time.time, time.monotonic) if self.has_bridge else lambda: None
-        steps = RoadUsersRing(folder).since if self.has_traffic else tuple
-        ports = Ports(new_ticks, stop, road_users=steps, link=link)
-        follow(ports, load_job(folder / SCENE_JOB), Path(self.path))
-
-
 class RoadUsersRing:
     """A worker's view of the road users, in a second ring of the run folder: how many, then the users."""
 
@@ -256,7 +234,13 @@ class RoadUsersRing:
     def newest(self) -> RoadUsersAt:
         """Return those of the newest step; nobody before the first."""
         record = self._ring.latest()
-        return RoadUsersAt(0, NOBODY) if record is None else _road_users_of(record)
+        return NOBODY_AT_ALL if record is None else _road_users_of(record)
+
+    def newest_two(self) -> tuple[RoadUsersAt | None, RoadUsersAt]:
+        """Return those of the last step but one, None where there is none, and those of the newest."""
+        records = self._ring.since(self._ring.newest - 2)[-2:]
+        steps = [_road_users_of(record) for record in records]
+        return (steps[0] if len(steps) > 1 else None), (steps[-1] if steps else NOBODY_AT_ALL)
 
     def since(self) -> list[RoadUsersAt]:
         """Return those of all steps since the last call, oldest first; gaps are allowed."""
@@ -272,11 +256,9 @@ def _road_users_of(record: Record) -> RoadUsersAt:
 
 def _view_scene(folder: Path) -> "ViewScene":
     """Return what the drive's view job describes."""
-    from simconsole.hud.driver_view.scene import view_scene
     from simconsole.session.view_job import load_view_job
 
-    job = load_view_job(folder / VIEW_JOB)
-    return view_scene(job.drawing, job.limit_kmh, job.size)
+    return load_view_job(folder / VIEW_JOB).scene()
 
 
 def command_writer(path: Path) -> Callable[[RemoteCommand, int | None], None]:

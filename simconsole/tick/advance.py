@@ -17,12 +17,22 @@ from simconsole.devices.calibration.calibrator import calibrate
 from simconsole.devices.calibration.cockpit_settings import CockpitSettings
 from simconsole.devices.force_feedback.force_settings import NO_FORCE, ForceSettings
 from simconsole.devices.force_feedback.torque import wheel_torque
-from simconsole.values.kernels import Row, kernel, put
+from simconsole.values.kernels import Row, kernel, put, stage
 from simconsole.values.latency import Hop, Mark, unheard
 from simconsole.values.layout import Part, lay_out, read, write
 from simconsole.values.platform import Platform, Step
-from simconsole.values.signals import NO_AHEAD, NO_COMMAND, NO_RULES_BROKEN, NO_SAMPLE, NO_SITUATION, Commander
+from simconsole.values.signals import (
+    NO_AHEAD,
+    NO_COMMAND,
+    NO_OBSTACLE_TOUCHED,
+    NO_RULES_BROKEN,
+    NO_SAMPLE,
+    NO_SITUATION,
+    Commander,
+)
 from simconsole.values.state_vector import INPUT_WIDTH, LAYOUT, PLATFORM_AT, Snapshot, TickInputs, columns
+from simconsole.world.obstacles.sides import FixedThings
+from simconsole.world.obstacles.striking import strike
 from simconsole.world.rules.road_rules import NO_ROADS, RoadRules
 from simconsole.world.rules.situation import look_around
 
@@ -61,12 +71,14 @@ class Console(NamedTuple):
     settings: Row  # CockpitSettings, ControlSettings, ForceSettings
     platform: Platform
     initial: Row  # the state vector before the first tick
+    restarted: Row  # work array: that before the first tick after a restart
     decide: Callable[[Row, Row, Row, float], None]
+    strike: Callable[[Row, Row, FixedThings], None] | None  # None: the world has no fixed things
     step: Step
     force_feedback: Callable[[Row, Row, Row, float], None] | None  # None: the wheel has no motor
     roads: RoadRules  # NO_ROADS: the world has no rules
     look_around: Callable[[Row, Row, RoadRules, float], None] | None  # None: likewise
-    block: Callable[[Row, Row, Row, Row, Row, Row, RoadRules, float, int], None]  # see `advance_block`
+    block: Callable[[Row, Row, Row, Row, Row, Row, Row, RoadRules, float, int], None]  # see `advance_block`
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -100,7 +112,7 @@ def build_console(
     if PHYSICS_HZ % tick_hz:
         raise ValueError(f"tick_hz {tick_hz} does not divide {PHYSICS_HZ}")
     feel = force_feedback if force.max_torque_nm > 0.0 else None
-    look = None if roads is None else look_around
+    look, struck = (None, None) if roads is None else (look_around, strike)
     return Console(
         tick_hz=tick_hz,
         tick_s=1.0 / tick_hz,
@@ -109,12 +121,14 @@ def build_console(
         settings=np.array((*cockpit, *control, *force), dtype=np.float64),
         platform=platform,
         initial=_initial(platform),
+        restarted=_initial(platform),
         decide=execution(decide),
+        strike=None if struck is None else execution(struck),
         step=execution(platform.step),
         force_feedback=None if feel is None else execution(feel),
         roads=NO_ROADS if roads is None else roads,
         look_around=None if look is None else execution(look),
-        block=execution(_block_of(in_order(decide, platform.step, look, feel, None))),
+        block=execution(_block_of(in_order(decide, struck, platform.step, look, feel, None))),
     )
 
 
@@ -139,7 +153,7 @@ def advance(
     state: ConsoleState, inputs: TickInputs, console: Console, mark: Mark = unheard
 ) -> tuple[ConsoleState, Snapshot]:
     """Advance the console by one tick. `state` is not changed; `mark` is called at the end of each stage."""
-    values = (*inputs.sample, *inputs.ros, *inputs.events, *inputs.ecu, *inputs.ahead)
+    values = (*inputs.sample, *inputs.ros, *inputs.events, *inputs.ecu, *inputs.ahead, *inputs.impact)
     row = advance_vector(state.vector, values, console, mark)
     tick = state.tick + 1
     return ConsoleState(tick, row), Snapshot(tick, console.tick_hz, row)
@@ -149,7 +163,8 @@ def advance_vector(previous: Row, inputs: Row | tuple[float, ...], console: Cons
     """Return the state vector after `previous` for the INPUT_WIDTH values `inputs`, as a replay needs it."""
     row = np.empty(console.width)
     row[:INPUT_WIDTH] = inputs
-    tick = in_order(console.decide, console.step, console.look_around, console.force_feedback, mark)
+    stages = console.decide, console.strike, console.step, console.look_around, console.force_feedback
+    tick = in_order(*stages, mark)
     tick(previous, row, *_constants(console))
     return row
 
@@ -165,14 +180,19 @@ def advance_block(previous: Row, rows: Row, console: Console) -> None:
     console.block(previous, rows, *_constants(console))
 
 
-def _constants(console: Console) -> tuple[Row, Row, Row, Row, RoadRules, float, int]:
+def _constants(console: Console) -> tuple[Row, Row, Row, Row, Row, RoadRules, float, int]:
     """Return what a tick takes beside the state vectors."""
-    on = console.platform
-    return console.settings, on.parameters, on.ground, console.initial, console.roads, console.tick_s, console.substeps
+    on, start = console.platform, (console.initial, console.restarted)
+    return console.settings, on.parameters, on.ground, *start, console.roads, console.tick_s, console.substeps
 
 
 def in_order(
-    decide: Stage, step: Stage, look_around: Stage | None, force_feedback: Stage | None, mark: Mark | None
+    decide: Stage,
+    strike: Stage | None,
+    step: Stage,
+    look_around: Stage | None,
+    force_feedback: Stage | None,
+    mark: Mark | None,
 ) -> Stage:
     """Return one tick: its stages in their order. Nowhere else do they stand.
 
@@ -188,6 +208,7 @@ def in_order(
         parameters: Row,
         ground: Row,
         initial: Row,
+        restarted: Row,
         roads: RoadRules,
         tick_s: float,
         substeps: int,
@@ -195,11 +216,16 @@ def in_order(
         """Write the state vector after `previous` into `row`, whose first columns hold the inputs."""
         decide(previous, row, settings, tick_s)
         if row[_RESTARTED_AT] > 0.0:
-            previous = start_again(previous, initial)
+            start_again(previous, initial, restarted)
+            previous = restarted
             decide(previous, row, settings, tick_s)
             row[_RESTARTED_AT] = 1.0
         if mark is not None:
             mark(_DECIDE)
+        if strike is None:
+            write(row, LAYOUT.obstacle, NO_OBSTACLE_TOUCHED)
+        else:
+            strike(previous, row, roads.things)
         step(previous, row, parameters, ground, substeps)
         if look_around is None:
             write(row, LAYOUT.situation, NO_SITUATION)
@@ -229,29 +255,30 @@ def _block_of(tick: Stage) -> Stage:
         parameters: Row,
         ground: Row,
         initial: Row,
+        restarted: Row,
         roads: RoadRules,
         tick_s: float,
         substeps: int,
     ) -> None:
         for index in range(len(rows)):
             row = rows[index]
-            tick(previous, row, settings, parameters, ground, initial, roads, tick_s, substeps)
+            tick(previous, row, settings, parameters, ground, initial, restarted, roads, tick_s, substeps)
             previous = row
 
     return block
 
 
 @kernel
-def start_again(previous: Row, initial: Row) -> Row:
-    """Return the state vector before the first tick, with the devices as they are, and the same simulated time."""
-    row = initial.copy()
+def start_again(previous: Row, initial: Row, row: Row) -> None:
+    """Write the state vector before the first tick into `row`, with the devices and the time of `previous`."""
+    for column in range(len(initial)):
+        row[column] = initial[column]
     row[_TICK_AT] = previous[_TICK_AT]
     write(row, LAYOUT.sample, read(previous, LAYOUT.sample))
     write(row, LAYOUT.driver, read(previous, LAYOUT.driver))
-    return row
 
 
-@kernel
+@stage
 def decide(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
     """Calibrate, arbitrate and gate: turn the inputs in `row` into the one command the vehicle gets."""
     ros = read(row, LAYOUT.ros)
@@ -301,7 +328,7 @@ def decide(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
     write(row, LAYOUT.command, command)
 
 
-@kernel
+@stage
 def force_feedback(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
     """Turn what the vehicle does into the torque of the wheel's motor, for the coming tick."""
     sample = read(row, LAYOUT.sample)

@@ -10,6 +10,7 @@ from simconsole.devices.force_feedback.force_settings import force_settings
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.session import Aids, Environment, SessionProfile, Start
 from simconsole.profiles.vehicle import CarProfile, VehicleProfile
+from simconsole.profiles.view import ENGLISH, LanguageProfile
 from simconsole.profiles.world import WorldProfile
 from simconsole.tick.advance import Console, ConsoleState, Execution, build_console, initial_state
 from simconsole.values.platform import NO_OBSTACLES, Ground, Obstacles, Patch, Platform, Pose
@@ -19,6 +20,7 @@ from simconsole.vehicle.platforms import build
 from simconsole.vehicle.rim_stiffness import rim_stiffness
 from simconsole.world.arena.arena_world import arena_of
 from simconsole.world.kinds.worlds import open_world
+from simconsole.world.obstacles.sides import body_of
 from simconsole.world.roads.road_world import roads_of
 from simconsole.world.rules.road_rules import RoadRules, road_rules
 
@@ -30,6 +32,7 @@ class ResolvedSession(Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     cockpit: CockpitProfile
     vehicle: VehicleProfile
     world: WorldProfile | None = None
+    language: LanguageProfile = ENGLISH
 
 
 def assemble(resolved: ResolvedSession, execution: Execution) -> tuple[Console, ConsoleState]:
@@ -78,7 +81,8 @@ def rules_of(world: WorldProfile | None, platform: Platform, tick_hz: int) -> Ro
     roads = None if world is None else roads_of(open_world(world))
     if roads is None:
         return None
-    return road_rules(roads.road_map, roads.legs, tick_hz, platform.length_m - platform.rear_overhang_m)
+    front_m = platform.length_m - platform.rear_overhang_m
+    return road_rules(roads.road_map, roads.legs, tick_hz, front_m, body_of(platform))
 
 
 def obstacles_of(world: WorldProfile | None) -> Obstacles:

@@ -24,9 +24,13 @@ _ROS: Final = LAYOUT.ros.slice
 _EVENTS: Final = LAYOUT.events.slice
 _ECU: Final = LAYOUT.ecu.slice
 _AHEAD: Final = LAYOUT.ahead.slice
+_IMPACT: Final = LAYOUT.impact.slice
+_COLLISION_AT: Final = LAYOUT.rules.at("collision")
+_EVENTS_AT: Final = LAYOUT.events.at("events")
 _EDGES_AT: Final = LAYOUT.driver.at("edges")
 _BUTTON_PAUSE: Final = int(Button.PAUSE)
 _PAUSE: Final = int(Event.PAUSE)
+_COLLISION: Final = int(Event.COLLISION)
 
 
 @runtime_checkable
@@ -132,12 +136,14 @@ class Foresight:
         if count < 1:
             return state, 0
         rows = self._rows[:count]
-        rows[:, _EVENTS] = 0.0
+        rows[:, _EVENTS] = rows[:, _IMPACT] = 0.0
         rows[:, _AHEAD] = self._parts.ahead()  # the same until the last tick's outputs have looked
         advance_block(state.vector, rows, self._console)
         if self._seated:
             count = _up_to_pause(rows)
+        count = _up_to_touch(state.vector, rows[:count])
         kept, events = self._parts.recorder.write_block(state.tick + 1, rows[:count])
+        events |= first_touch(rows[kept - 2] if kept > 1 else state.vector, rows[kept - 1])
         last = rows[kept - 1].copy()
         if self._seated and int(last[_EDGES_AT]) & _BUTTON_PAUSE:
             events |= _PAUSE
@@ -167,3 +173,19 @@ def _up_to_pause(rows: Row) -> int:
         return len(rows)
     pressed = np.flatnonzero(edges.astype(np.int64) & _BUTTON_PAUSE)
     return int(pressed[0]) + 1 if len(pressed) else len(rows)
+
+
+def first_touch(before: Row, after: Row) -> int:
+    """Return the event that a fixed thing is touched in a tick; who touches a road user is told with the impulse."""
+    if not after[_COLLISION_AT] or before[_COLLISION_AT] or int(after[_EVENTS_AT]) & _COLLISION:
+        return 0
+    return _COLLISION
+
+
+def _up_to_touch(before: Row, rows: Row) -> int:
+    """Return how many of these ticks there are up to the first in which a fixed thing is touched, all without one."""
+    told = rows[:, _COLLISION_AT]
+    if not np.count_nonzero(told):
+        return len(rows)
+    rises = np.flatnonzero(np.diff(told, prepend=before[_COLLISION_AT]) > 0.0)
+    return int(rises[0]) + 1 if len(rises) else len(rows)

@@ -4,10 +4,21 @@ from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple, Protocol
 
 from simconsole.tick.advance import Console, ConsoleState, advance
-from simconsole.tick.foresight import Foresight
+from simconsole.tick.foresight import Foresight, first_touch
 from simconsole.values.latency import Hop, LatencyStatistics, unheard
 from simconsole.values.protocols import CommandSource, DeviceSource, NobodyCommands, Output, Seat
-from simconsole.values.signals import NO_AHEAD, NO_COMMAND, NO_EVENTS, NO_SAMPLE, AheadInput, Button, Event, EventInput
+from simconsole.values.signals import (
+    NO_AHEAD,
+    NO_COMMAND,
+    NO_EVENTS,
+    NO_IMPACT,
+    NO_SAMPLE,
+    AheadInput,
+    Button,
+    Event,
+    EventInput,
+    ImpactInput,
+)
 from simconsole.values.state_vector import Snapshot, TickInputs
 
 
@@ -31,6 +42,9 @@ class RoadUsers(Protocol):
     def ahead(self) -> AheadInput:
         """Return whom the vehicle follows, as of the last step."""
 
+    def take_impact(self) -> ImpactInput:
+        """Return what a collision has done to the vehicle since the last call."""
+
 
 class Faults(Protocol):
     """The schedule of the faults that a scenario puts into a drive."""
@@ -46,6 +60,7 @@ AT_REST_S: Final = 20.0
 """Simulated time after which a drive ends even if the vehicle still rolls."""
 REST_MPS: Final = 0.05
 
+_COLLISION: Final = int(Event.COLLISION)
 _END: Final = int(Event.END)
 _EMERGENCY: Final = int(Event.EMERGENCY_STOP)
 _PAUSE: Final = int(Event.PAUSE)
@@ -94,10 +109,13 @@ def run(
     snapshot = Snapshot(state.tick, console.tick_hz, state.vector)
     end, latencies = state.tick + ticks, components.latencies
     outputs = [(output, getattr(output, "hop", Hop.OTHERS)) for output in components.outputs]
-    ahead_now = _ahead_of(components)
+    ahead_now, take_impact = _ahead_of(components), _impact_of(components)
     foresight = _foresight(console, components, ahead_now) if at_once else None
     while state.tick < end and not finished(snapshot):
-        if foresight is not None and not carried:
+        impact = take_impact()
+        if impact.first_touch:
+            carried |= _COLLISION
+        if foresight is not None and not carried and impact is NO_IMPACT:
             state, carried = foresight.advance(state, end)
             if state.tick > snapshot.tick:
                 snapshot = Snapshot(state.tick, console.tick_hz, state.vector)
@@ -122,8 +140,10 @@ def run(
         if carried & _START:
             carried &= ~_PAUSE
         edges = EventInput(float(carried), faults, float(int(ecu_events.events) | carried_ecu))
-        state, snapshot = advance(state, TickInputs(sample, ros, edges, ecu, ahead), console, mark)
-        recorded = components.recorder.write(snapshot)
+        inputs = TickInputs(sample=sample, ros=ros, events=edges, ecu=ecu, ahead=ahead, impact=impact)
+        before = state.vector
+        state, snapshot = advance(state, inputs, console, mark)
+        recorded = components.recorder.write(snapshot) | first_touch(before, snapshot.vector)
         mark(Hop.RECORD)
         for output, hop in outputs:
             output.publish(snapshot)
@@ -143,6 +163,14 @@ def _ahead_of(components: Components) -> Callable[[], AheadInput]:
 
 def _nobody_ahead() -> AheadInput:
     return NO_AHEAD
+
+
+def _impact_of(components: Components) -> Callable[[], ImpactInput]:
+    return _nobody_strikes if components.road_users is None else components.road_users.take_impact
+
+
+def _nobody_strikes() -> ImpactInput:
+    return NO_IMPACT
 
 
 def _foresight(console: Console, components: Components, ahead_now: Callable[[], AheadInput]) -> Foresight | None:

@@ -43,6 +43,8 @@ class Channel(IntEnum):
     ROBOT_ACCEL_Y = 20
     ROBOT_ACCEL_Z = 21
     ALLOCATION = 22
+    MEASUREMENT_JITTER = 23
+    MEASUREMENT_LOSS = 24
 
 
 def _mixed(value: int) -> int:

@@ -22,9 +22,24 @@ def kernel(function: F) -> F:
     return function
 
 
+def stage(function: F) -> F:
+    """Mark `function` as a kernel that is compiled once, by itself; kernels that call it share that machine code.
+
+    Other kernels are compiled into each one that calls them: faster where little is done in a call, but long to
+    compile where much is.
+    """
+    function.__stage__ = True  # type: ignore[attr-defined]
+    return kernel(function)
+
+
 def is_kernel(value: object) -> bool:
-    """Return whether `value` was marked by `kernel`."""
+    """Return whether `value` was marked by `kernel` or `stage`."""
     return bool(getattr(value, "__kernel__", False))
+
+
+def is_stage(value: object) -> bool:
+    """Return whether `value` was marked by `stage`."""
+    return bool(getattr(value, "__stage__", False))
 
 
 def forget() -> None:

@@ -71,6 +71,7 @@ _NOTICES: Final[dict[float, str]] = {
     Notice.OFF_ROAD: "off the road",
     Notice.SPEEDING: "faster than the speed limit",
     Notice.FAILING_TO_YIELD: "failed to yield",
+    Notice.COLLISION: "collision",
 }
 
 EASED_BELOW: Final = 0.995

@@ -17,6 +17,7 @@ __all__ = [
     "Platform",
     "Pose",
     "RimStiffness",
+    "Solid",
     "Step",
 ]
 
@@ -42,6 +43,14 @@ class Obstacles(NamedTuple):
 NO_OBSTACLES: Final = Obstacles()
 
 
+class Solid(NamedTuple):
+    """What a collision works on: a body that moves in the plane."""
+
+    mass_kg: float
+    yaw_inertia_kgm2: float
+    cg_ahead_m: float  # of base_link
+
+
 class RimStiffness(NamedTuple):
     """What a steering is like about the middle, as far as a wheel's motor must know it.
 
@@ -64,9 +73,10 @@ class Platform(NamedTuple):
     """One vehicle, ready to drive.
 
     `step(previous, vector, parameters, ground, substeps)` is a kernel: it reads `VehicleCommand` from `vector` at
-    LAYOUT.command and its own state from `previous` at PLATFORM_AT, advances `substeps` steps of 1 ms on `ground`, and
-    writes `VehicleState` at LAYOUT.vehicle and its state at PLATFORM_AT of `vector` (simconsole.values.state_vector).
-    What it knows of the vehicle is in `parameters`, of the ground in `ground` (simconsole.values.ground).
+    LAYOUT.command, what collisions did at LAYOUT.impact and LAYOUT.obstacle, and its own state from `previous` at
+    PLATFORM_AT. It advances `substeps` steps of 1 ms on `ground`, and writes `VehicleState` at LAYOUT.vehicle and its
+    state at PLATFORM_AT of `vector` (simconsole.values.state_vector). What it knows of the vehicle is in `parameters`,
+    and of the ground in `ground` (simconsole.values.ground).
     """
 
     name: str
@@ -83,4 +93,5 @@ class Platform(NamedTuple):
     width_m: float
     height_m: float
     rear_overhang_m: float  # from base_link to the rear end
+    solid: Solid | None = None  # None: its step takes no impact; where it strikes something a drive ends
     turns_in_place: bool = False  # it follows a speed and a yaw rate; a car is steered and driven by pedals

@@ -13,6 +13,7 @@ from simconsole.values.layout import Part, lay_out, read
 from simconsole.values.signals import (
     NO_AHEAD,
     NO_COMMAND,
+    NO_IMPACT,
     AheadInput,
     ArbiterMemory,
     Arbitration,
@@ -21,11 +22,13 @@ from simconsole.values.signals import (
     DriverInput,
     Event,
     EventInput,
+    ImpactInput,
     Link,
     LinkState,
     Mode,
     MotorPipe,
     Notice,
+    ObstacleImpact,
     RemoteCommand,
     Rules,
     Situation,
@@ -45,6 +48,7 @@ class Layout(NamedTuple):
     events: Part[EventInput]
     ecu: Part[RemoteCommand]
     ahead: Part[AheadInput]
+    impact: Part[ImpactInput]
     driver: Part[DriverInput]
     memory: Part[ArbiterMemory]
     ros_link: Part[Link]
@@ -57,19 +61,27 @@ class Layout(NamedTuple):
     pipe: Part[MotorPipe]
     situation: Part[Situation]
     rules: Part[Rules]
+    obstacle: Part[ObstacleImpact]
 
 
 LAYOUT: Final = lay_out(Layout)
-INPUT_WIDTH: Final = LAYOUT.ahead.stop
+INPUT_WIDTH: Final = LAYOUT.impact.stop
 """The first columns: what comes from outside."""
-PLATFORM_AT: Final = LAYOUT.rules.stop
+PLATFORM_AT: Final = LAYOUT.obstacle.stop
 """Where the platform's own state begins."""
 
 _RECORDING_FAILED: Final = int(Event.RECORDING_FAILED)
 _NOTICE_AT: Final = LAYOUT.arbitration.at("notice")
 _MODE_AT: Final = LAYOUT.arbitration.at("mode")
 _RULES_AT: Final = LAYOUT.rules.start
-_RULES: Final = (Notice.RED_LIGHT, Notice.WRONG_WAY, Notice.OFF_ROAD, Notice.SPEEDING, Notice.FAILING_TO_YIELD)
+_RULES: Final = (
+    Notice.COLLISION,
+    Notice.RED_LIGHT,
+    Notice.WRONG_WAY,
+    Notice.OFF_ROAD,
+    Notice.SPEEDING,
+    Notice.FAILING_TO_YIELD,
+)
 """The notices of the first columns of `Rules`, in their order."""
 
 
@@ -81,6 +93,7 @@ class TickInputs(NamedTuple):
     events: EventInput
     ecu: RemoteCommand = NO_COMMAND
     ahead: AheadInput = NO_AHEAD
+    impact: ImpactInput = NO_IMPACT
 
 
 def columns(platform_state: type[tuple[float, ...]]) -> tuple[str, ...]:
@@ -91,7 +104,7 @@ def columns(platform_state: type[tuple[float, ...]]) -> tuple[str, ...]:
 
 def input_vector(inputs: TickInputs) -> Row:
     """Return the first INPUT_WIDTH columns of a state vector."""
-    return np.array((*inputs.sample, *inputs.ros, *inputs.events, *inputs.ecu, *inputs.ahead), dtype=np.float64)
+    return np.array([value for part in inputs for value in part], dtype=np.float64)
 
 
 class Snapshot(NamedTuple):

@@ -4,11 +4,13 @@ import math
 from collections.abc import Iterator
 from typing import Final
 
-from simconsole.profiles.world import CourseProfile, Primitive
+import numpy as np
+
+from simconsole.profiles.world import CourseProfile, Primitive, Roundabout
 from simconsole.values.platform import Pose
 from simconsole.values.units import MPS_PER_KMH
 from simconsole.world.path_geometry import Piece, travel
-from simconsole.world.route import Landmark, Route, Stretch
+from simconsole.world.route import Landmark, Route, Stretch, Turn
 
 _MET_M: Final = 1e-3
 _MET_RAD: Final = 1e-6
@@ -25,6 +27,7 @@ class Course(Route):
             closed=_meet(world),
         )
         self.landmarks = tuple(self._landmarks())
+        self.turns = tuple(self._roundabout(ring) for ring in world.roundabouts)
 
     def _landmarks(self) -> Iterator[Landmark]:
         half = 0.5 * self.world.lane_width_m
@@ -35,6 +38,20 @@ class Course(Route):
             yield self._across(kind, spot.s_m, half - spot.arm_m, half + spot.arm_m)
         for ring in self.world.roundabouts:
             yield Landmark("roundabout", ring.s_m, ring.x_m, ring.y_m)
+
+    def _roundabout(self, ring: Roundabout) -> Turn:
+        """Return the turn at a roundabout, whose roads stand at right angles and which is driven leftwards."""
+        stations = np.arange(ring.s_m, ring.end_s_m, 0.5)
+        places = [self.at(s) for s in stations.tolist()]
+        away = np.array([math.hypot(at.x_m - ring.x_m, at.y_m - ring.y_m) for at in places])
+        inside = stations[away < ring.radius_m + self.world.lane_width_m]
+        turned = math.remainder(self.at(ring.end_s_m).yaw_rad - self.at(ring.s_m).yaw_rad, math.tau)
+        return Turn(
+            s_m=float(inside[0]),
+            end_s_m=float(inside[-1]),
+            angle_rad=turned,
+            exit=1 + round((turned + 0.5 * math.pi) / (0.5 * math.pi)) % 4,
+        )
 
     def _across(self, kind: str, s_m: float, right_m: float, left_m: float) -> Landmark:
         here = self.at(s_m)

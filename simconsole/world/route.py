@@ -65,6 +65,15 @@ class Landmark(NamedTuple):
     across: tuple[tuple[float, float], ...] = ()
 
 
+class Turn(NamedTuple):
+    """A junction at which the path does not just go on: what a driver is told before it."""
+
+    s_m: float  # where the path enters the junction
+    end_s_m: float  # and where it has left it
+    angle_rad: float  # from the road before to the road after, left-positive
+    exit: int = 0  # of a roundabout: which exit, the first is 1; 0: it is none
+
+
 class Route:
     """A path. Arrays hold the cells' starts: `s`, `x`, `y`, `yaw` (continuous), `curvature`, `limit`, float64 [N].
 
@@ -77,6 +86,7 @@ class Route:
     ) -> None:
         self.closed = closed
         self.landmarks = tuple(landmarks)
+        self.turns: tuple[Turn, ...] = ()
         self.length_m = stretches[-1].s_m + stretches[-1].piece.length_m
         cells = [cell for stretch in stretches for cell in _cells(stretch)]
         columns = np.array(cells).T

@@ -24,8 +24,9 @@ OFFSET: Final = 13  # left of its lane's centre where its change of lane began, 
 CHANGED: Final = 14  # how far the change is done, 0 to 1
 STOOD: Final = 15  # for how long, s
 SINCE_CHANGE: Final = 16  # s
+CRASHED: Final = 17  # 1: it has collided, and does nothing more than come to rest
 
-VALUES: Final = 17
+VALUES: Final = 18
 
 # Rows of int64, one a vehicle: its path, a window of lanes that moves along.
 COUNT: Final = 0

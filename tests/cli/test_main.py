@@ -21,6 +21,7 @@ COMMANDS = {
     "bridge",
     "can",
     "autopilot",
+    "new",
     "doctor",
 }
 

@@ -52,13 +52,13 @@ def snapshot(tick: int, **arbitration: float) -> Snapshot:
     return Snapshot(tick, 250, row)
 
 
-def test_a_line_tells_way_speed_and_mode_and_never_ends_the_drive(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_line_tells_way_speed_and_mode(monkeypatch: pytest.MonkeyPatch) -> None:
     terminal = Terminal()
     monkeypatch.setattr("sys.stderr", terminal)
     with Progress("driving", 3000.0) as progress:
-        assert not progress.watch(snapshot(TICKS_BETWEEN_LOOKS - 1, mode=float(Mode.MANUAL)))
+        progress.show(snapshot(TICKS_BETWEEN_LOOKS - 1, mode=float(Mode.MANUAL)))
         assert terminal.getvalue() == "\r\x1b[Kdriving ..."
-        assert not progress.watch(snapshot(TICKS_BETWEEN_LOOKS * 125, mode=float(Mode.MANUAL)))
+        progress.show(snapshot(TICKS_BETWEEN_LOOKS * 125, mode=float(Mode.MANUAL)))
     shown = terminal.getvalue().split("\r\x1b[K")[2:]
     assert shown[0] == f"driving:    32.0 s    120.0 m of 3000 m   36.0 km/h  {mode_label(float(Mode.MANUAL))}"
     assert shown[-1] == ""
@@ -78,7 +78,7 @@ def test_on_a_pipe_there_is_nothing_and_a_closed_terminal_ends_nothing(monkeypat
     pipe = io.StringIO()
     monkeypatch.setattr("sys.stderr", pipe)
     with Progress("driving") as progress:
-        progress.watch(snapshot(TICKS_BETWEEN_LOOKS))
+        progress.show(snapshot(TICKS_BETWEEN_LOOKS))
     assert pipe.getvalue() == ""
 
     def closed(text: str) -> int:
@@ -88,7 +88,7 @@ def test_on_a_pipe_there_is_nothing_and_a_closed_terminal_ends_nothing(monkeypat
     monkeypatch.setattr(terminal, "write", closed)
     monkeypatch.setattr("sys.stderr", terminal)
     with Progress("driving") as progress:
-        assert not progress.watch(snapshot(TICKS_BETWEEN_LOOKS))
+        progress.show(snapshot(TICKS_BETWEEN_LOOKS))
 
 
 def test_ticks_are_counted_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:

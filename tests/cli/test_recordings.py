@@ -1,12 +1,16 @@
 """What can be done with a bundle, from the command line."""
 
+import os
 import shutil
+import signal
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from tests.drives.console import complaint, results, simconsole
+from simconsole.cli.main import main
+from tests.drives.console import Running, complaint, results, simconsole
+from tests.patience import wait_until
 
 FORGED_TICK = 400
 
@@ -67,6 +71,32 @@ def test_view_writes_the_scene_without_opening_it(short: Path, tmp_path: Path) -
     assert done.returncode == 0, done.stderr
     assert results(done) == {"scene": str(short / "scene.rrd"), "problems": []}
     assert (short / "scene.rrd").read_bytes()[:4] == b"RRF2"
+
+
+def test_view_opens_a_bundle_s_scene_in_a_window_that_listens_on_this_machine_only(
+    short: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    opened: list[str] = []
+    monkeypatch.setattr("simconsole.scene.viewer.scene_server.open_native", opened.append)
+    assert main(["view", str(short)]) == 0
+    assert opened == [str(short / "scene.rrd")]
+
+
+def test_view_shows_a_bundle_in_the_browser_when_told_so(short: Path, tmp_path: Path) -> None:
+    """BROWSER names a program that is started instead of the browser: a client of the served scene."""
+    seen = tmp_path / "address"
+    browser = tmp_path / "browser"
+    browser.write_text(f'#!/bin/sh\necho "$1" > {seen}.new\nmv {seen}.new {seen}\n')
+    browser.chmod(0o755)
+    with Running(tmp_path / "view", "view", short, "--browser", "--json", BROWSER=str(browser)) as shown:
+        wait_until(lambda: shown.process.poll() is not None or seen.exists(), "a browser")
+        assert seen.read_text().startswith("http://127.0.0.1:")
+        wait_until(lambda: "browsers of this machine" in shown.err.read_text(), "the address")
+        os.kill(shown.process.pid, signal.SIGINT)
+        done = shown.end()
+    assert done.returncode == 130, done.stderr
+    assert results(done)["scene"] == str(short / "scene.rrd")
+    assert "the drive has ended" not in done.stderr
 
 
 def test_compare_finds_two_drives_of_one_script_equal(short: Path, script: Path, tmp_path: Path) -> None:

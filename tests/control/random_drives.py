@@ -69,15 +69,18 @@ OFTEN: Final = {
 
 
 @kernel
-def drive(inputs: Row, outputs: Row, row: Row, tick_s: float) -> None:
-    """Run rows of driver, remote, vehicle and event through arbitration and gate; speed follows the pedals."""
+def drive(inputs: Row, outputs: Row, row: Row, before: Row, vehicle_row: Row, tick_s: float) -> None:
+    """Run rows of driver, remote, vehicle and event through arbitration and gate; speed follows the pedals.
+
+    Kernels make and copy no arrays: `before`, all zeros, and `vehicle_row` are for what passes from row to row.
+    """
     s = read(row, SETTINGS)
-    before = np.zeros(OUTPUT_WIDTH)
     speed = 0.0
     ros_age_before = ecu_age_before = NEVER_TICKS
     for index in range(inputs.shape[0]):
         given = inputs[index]
-        vehicle_row = given[VX - VX_SEEN : EVENT_AT].copy()
+        for at in range(len(vehicle_row)):
+            vehicle_row[at] = given[VX - VX_SEEN + at]
         if given[VX] == KEEP_SPEED:
             vehicle_row[VX_SEEN] = speed
         vehicle = read(vehicle_row, SEEN)
@@ -115,7 +118,8 @@ def drive(inputs: Row, outputs: Row, row: Row, tick_s: float) -> None:
         write(before, ARBITRATION, arbitration)
         write(before, COMMAND, command)
         before[SPEED_AT] = speed
-        outputs[index] = before
+        for at in range(len(before)):
+            outputs[index, at] = before[at]
         speed = speed + (4.0 * command.throttle - 9.0 * command.brake - 0.2) * tick_s
         if speed < 0.0:
             speed = 0.0
@@ -239,7 +243,8 @@ def random_drive(tick_hz: int, seed: int, steps: int, execution: object = compil
 
 def driven(inputs: Rows, s: ControlSettings, tick_hz: int, execution: object = compiled) -> Drive:
     outputs = np.empty((len(inputs), OUTPUT_WIDTH))
-    execution(drive)(inputs, outputs, np.array(s), 1.0 / tick_hz)  # type: ignore[operator]
+    before, vehicle_row = np.zeros(OUTPUT_WIDTH), np.zeros(EVENT_AT - VX + VX_SEEN)
+    execution(drive)(inputs, outputs, np.array(s), before, vehicle_row, 1.0 / tick_hz)  # type: ignore[operator]
     return Drive(s, 1.0 / tick_hz, inputs, outputs)
 
 

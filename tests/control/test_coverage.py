@@ -9,7 +9,7 @@ from tests.paths import ROOT
 
 ROOM = ROOT / "simconsole" / "control"
 DRIVES = (
-    *("arbitration", "commander", "pairs", "random", "reactions"),
+    *("arbitration", "commander", "flapping", "implausible", "pairs", "random", "reactions"),
     *("shared_drives", "short_drives", "speed_loop", "stops", "walk"),
 )
 """Tests that drive for seconds would take what single tests should take, and compiled code is not seen line by line."""

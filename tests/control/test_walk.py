@@ -89,7 +89,8 @@ def walked(variant: Variant, times: dict[str, float], ticks: int, seed: int, cou
     go = compiled(walk)
     while figures[0] < ticks:
         draws = rng.random((min(CHUNK, ticks - int(figures[0])), DRAWS))
-        breach = go(draws, state, foreseen, before, recent, counts, figures, s, r, 1.0 / hz)
+        of_a_tick = np.zeros(COUNT), np.zeros(len(COLUMNS))
+        breach = go(draws, state, foreseen, before, recent, counts, figures, s, r, *of_a_tick, 1.0 / hz)
         if breach:
             told = f"{BREACHES[int(breach)]} at tick {figures[0] - 1:.0f} of {variant}, {times}, seed {seed}: "
             told += f"expected {Mode(int(figures[3])).name}, seen {Mode(int(figures[4])).name}\n"

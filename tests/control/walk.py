@@ -2,8 +2,6 @@
 
 from typing import Final
 
-import numpy as np
-
 from simconsole.control.arbitration import arbitrate
 from simconsole.control.gate import gate
 from simconsole.control.requests.tick_context import TickContext
@@ -250,18 +248,19 @@ def walk(
     figures: Row,
     row: Row,
     rules_row: Row,
+    present: Row,
+    given: Row,
     tick_s: float,
 ) -> float:
     """Go on with a drive for as many ticks as there are rows of `draws`; return the breach that ended it, 0 for none.
 
     All that lasts stands in the rows: the generator's state `g`, the oracle's `o`, and what the tick before gave.
     `figures` is the tick, the longest time after the last plausible command in ticks, the wheel's motor, the oracle's
-    mode and the one seen, and how long an automatic mode may last.
+    mode and the one seen, and how long an automatic mode may last. `present` and `given`, all zeros, are for one tick:
+    kernels make no arrays.
     """
     s = read(row, SETTINGS)
     r = read(rules_row, RULES)
-    present = np.zeros(COUNT)
-    given = np.zeros(recent.shape[1])
     hz = 1.0 / tick_s
     for index in range(draws.shape[0]):
         u = draws[index]
@@ -302,7 +301,8 @@ def walk(
         felt = (explained, 0.0, abs(g[HUMAN]))
         may_command = foresee(o, present, driver, g[EVENT_MASK], g[ECU_MASK], ros, ecu, vehicle, felt, arbitration, r)
         note(given, g, figures, mode, driver, ros, ecu)
-        recent[int(figures[0]) % RECENT] = given
+        for at in range(len(given)):
+            recent[int(figures[0]) % RECENT, at] = given[at]
         count(counts, present, mode)
         breach = judge(
             o,

@@ -9,7 +9,7 @@ from simconsole.devices.calibration.inverse_calibration import Intent, raw_sampl
 from simconsole.devices.force_feedback.motor import SimulatedWheelPort, WheelMotor
 from simconsole.devices.force_feedback.simulated_wheel import RELAXED, Arm, SimulatedWheel, step_wheel
 from simconsole.profiles.force_feedback import ForceFeedback, Motor
-from simconsole.session.resolution import load_session, resolve
+from simconsole.session.resolution import load_session, override, resolve
 from simconsole.tick.advance import advance_vector
 from simconsole.tick.assembly import ResolvedSession, assemble
 from simconsole.values.host.jit import compiled
@@ -34,7 +34,7 @@ MODE_AT = LAYOUT.arbitration.at("mode")
 
 
 def resolved(tick_hz: int) -> ResolvedSession:
-    session = load_session("demo")
+    session = override(load_session("demo"), environment={"world": "urban", "traffic": None})
     mode = msgspec.structs.replace(session.mode, tick_hz=tick_hz)
     return resolve(msgspec.structs.replace(session, mode=mode))
 

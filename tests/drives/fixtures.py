@@ -1,6 +1,10 @@
-"""A short drive and the demo, that many tests look at: made once in a test run."""
+"""A short drive and the demo, that many tests look at: made once in a test run, whichever of its processes asks."""
 
+import fcntl
+import json
 import os
+import shutil
+from collections.abc import Callable
 from pathlib import Path
 from subprocess import CompletedProcess
 from typing import Any, NamedTuple
@@ -21,23 +25,46 @@ points:
   - {time_s: 2.6, throttle: 0, brake: 0.3}
 """
 
+Once = Callable[[str, Callable[[Path], object]], Path]
+"""Return the folder of this name; whoever asks first makes what is in it, the others wait."""
+
 
 @pytest.fixture(scope="session")
-def script(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def once(tmp_path_factory: pytest.TempPathFactory) -> Once:
+    """Make what all processes of a test run share."""
+    base = tmp_path_factory.getbasetemp()
+    shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+
+    def folder_of(name: str, make: Callable[[Path], object]) -> Path:
+        folder, made = shared / name, shared / f"{name}.made"
+        with (shared / f"{name}.lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            if not made.exists():
+                shutil.rmtree(folder, ignore_errors=True)  # of one who failed
+                folder.mkdir()
+                make(folder)
+                made.touch()
+        return folder
+
+    return folder_of
+
+
+@pytest.fixture(scope="session")
+def script(once: Once) -> Path:
     """A person who drives off and brakes."""
-    path = tmp_path_factory.mktemp("script") / "launch.yaml"
-    path.write_text(SCRIPT)
-    return path
+    return once("script", lambda folder: (folder / "launch.yaml").write_text(SCRIPT)) / "launch.yaml"
 
 
 @pytest.fixture(scope="session")
-def short(tmp_path_factory: pytest.TempPathFactory, script: Path) -> Path:
+def short(once: Once, script: Path) -> Path:
     """The bundle of a scripted drive of three seconds, with its log. Read only: copy it to change it."""
-    bundle = tmp_path_factory.mktemp("short") / "bundle"
-    words = ("--headless", "--driver", f"script:{script}", "--for", 3, "--out", bundle, "--no-pack")
-    done = simconsole("drive", *words)
-    assert done.returncode == 0, done.stderr
-    return bundle
+
+    def make(folder: Path) -> None:
+        words = ("--headless", "--driver", f"script:{script}", "--for", 3, "--out", folder / "bundle", "--no-pack")
+        done = simconsole("drive", *words)
+        assert done.returncode == 0, done.stderr
+
+    return once("short", make) / "bundle"
 
 
 class Demo(NamedTuple):
@@ -46,17 +73,31 @@ class Demo(NamedTuple):
     bundle: Path
     done: "CompletedProcess[str]"
     results: dict[str, Any]
-    table: LogTable
     cpu_s: float  # of the console and all that it started
+
+    @property
+    def ticks(self) -> int:
+        """How many the log holds."""
+        return len(self.table("arbitration.mode").ticks)
+
+    def table(self, *columns: str) -> LogTable:
+        """These columns; all of them are more than a process of the tests should hold."""
+        return open_bundle(self.bundle).log.table(columns)
 
 
 @pytest.fixture(scope="session")
-def demo(tmp_path_factory: pytest.TempPathFactory) -> Demo:
-    """`simconsole demo`, once for all tests, as a person starts it."""
-    bundle = tmp_path_factory.mktemp("demo") / "bundle"
-    before = os.times()
-    done = simconsole("demo", "--out", bundle, "--json")
-    after = os.times()
-    cpu_s = sum(after[2:4]) - sum(before[2:4])
-    assert done.returncode == 0, done.stderr
-    return Demo(bundle, done, results(done), open_bundle(bundle).log.table(), cpu_s)
+def demo(once: Once) -> Demo:
+    """`simconsole demo`, once for all tests, as a person starts it. Read only: copy it to change it."""
+
+    def make(folder: Path) -> None:
+        before = os.times()
+        done = simconsole("demo", "--out", folder / "bundle", "--json")
+        after = os.times()
+        assert done.returncode == 0, done.stderr
+        cpu_s = sum(after[2:4]) - sum(before[2:4])
+        (folder / "told.json").write_text(json.dumps([done.stdout, done.stderr, cpu_s]))
+
+    folder = once("demo", make)
+    out, err, cpu_s = json.loads((folder / "told.json").read_text())
+    done = CompletedProcess(["simconsole", "demo"], 0, out, err)
+    return Demo(folder / "bundle", done, results(done), cpu_s)

@@ -27,7 +27,7 @@ STANDING_MPS = 0.02
 _TRIES = 10_000
 _REACHED_RAD = 1e-6
 _STATES = len(VehicleState._fields)
-_SETTLED_M = 20.0
+SETTLED_M = 20.0
 """Driven by the autopilot before its errors count: it takes over beside the path, from a person."""
 
 
@@ -79,7 +79,7 @@ class Tracked(NamedTuple):
     could tell from the path otherwise.
     """
 
-    stopped: bool
+    stopped: bool  # by the console, or taken over, before the end of the route
     rms_cm: float
     max_cm: float
     lateral_kept: float  # share of ticks within 2.5 m/s2 of lateral acceleration
@@ -89,11 +89,13 @@ class Tracked(NamedTuple):
     left_m: float  # of the route
 
 
-def tracked(world: CourseProfile, vehicle: str, link: str, folder: Path, tracker: str = "preview") -> Tracked:
-    """Drive one lap over the link (YAML of a LinkProfile) and measure."""
+def tracked(
+    world: CourseProfile, vehicle: str, link: str, folder: Path, tracker: str = "preview", control: str = "{}"
+) -> Tracked:
+    """Drive one lap over the link (YAML of a LinkProfile), behind a gate (of a ControlProfile), and measure."""
     folder.mkdir()
     (folder / "course.yaml").write_text(to_text(world, "random"))
-    return tracked_on(Course(world), "course.yaml", vehicle, link, folder, tracker=tracker)
+    return tracked_on(Course(world), "course.yaml", vehicle, link, folder, tracker=tracker, control=control)
 
 
 def tracked_on(
@@ -104,11 +106,13 @@ def tracked_on(
     folder: Path,
     hand_over_m: float = 20.0,
     tracker: str = "preview",
+    control: str = "{}",
 ) -> Tracked:
     """Drive a lap, or an open route up to its end, in a world of `folder` or a shipped one, and measure."""
     (folder / "session.yaml").write_text(
         f"schema: 1\nenvironment: {{world: {world}}}\n"
-        f"scenario: {{vehicle: {vehicle}, duration_s: 600}}\nfeatures: {{autopilot: {world}, tracker: {tracker}}}\n"
+        f"scenario: {{vehicle: {vehicle}, duration_s: 600}}\n"
+        f"features: {{autopilot: {world}, tracker: {tracker}, control: {control}}}\n"
         f"outputs: {{hud: null, scene: null, report: false, bridge: {{port: 0, link: {link}}}}}\n"
         "devices: {driver: virtual, person: {sit_s: 0.5, cruise_kmh: 20, top_gear: 2, autonomy: "
         f"{{distance_m: {hand_over_m}}}}}}}\n"
@@ -132,7 +136,7 @@ def tracked_on(
     mode, distance = table.column("arbitration.mode"), table.column("vehicle.distance_m")
     driven = mode == float(Mode.AUTONOMOUS)
     first = int(np.flatnonzero(driven)[0])
-    settled = driven & (distance > distance[first] + _SETTLED_M)
+    settled = driven & (distance > distance[first] + SETTLED_M)
     drift = _drift(resolved.session.outputs.bridge.link, len(mode), resolved.session.mode.tick_hz)
     x, y = table.column("vehicle.x_m") + drift[:, 0], table.column("vehicle.y_m") + drift[:, 1]
     place, lateral = route.project_all(x, y, 0.0)
@@ -142,17 +146,18 @@ def tracked_on(
     accel, sequence = table.column("ros.accel_mps2")[commands], table.column("ros.sequence")[commands]
     missing_rad = np.abs(table.column("ros.road_wheel_rad") - table.column("command.road_wheel_rad"))[commands[1:] - 1]
     tick_hz = resolved.session.mode.tick_hz
+    left_m = route.length_m - float(place[-1])
     jerk = np.diff(accel) / (np.diff(sequence) * PERIOD_S)
     gentle = (np.abs(jerk) <= 3.0 + 1e-9) & (accel[1:] <= 1.6 + 1e-9) & (accel[1:] >= -2.0 - 1e-9)
     return Tracked(
-        stopped=bool(np.isin(mode, [float(one) for one in ended]).any()),
+        stopped=bool(np.isin(mode, [float(one) for one in ended]).any()) or left_m > END_M,
         rms_cm=float(np.sqrt(np.mean(errors_cm**2))),
         max_cm=float(errors_cm.max()),
         lateral_kept=float((np.abs(table.column("vehicle.ay_mps2")[settled]) <= 2.5).mean()),
         longitudinal_kept=float(gentle.mean()),
         reached=float((missing_rad < _REACHED_RAD).mean()),
         driven_s=float(settled.sum()) / tick_hz,
-        left_m=route.length_m - float(place[-1]),
+        left_m=left_m,
     )
 
 

@@ -79,7 +79,8 @@ def test_drift_is_followed(sample: Sample, tmp_path: Path, vehicle: str) -> None
 
 
 def test_jitter_and_loss_besides(sample: Sample, tmp_path: Path) -> None:
-    link = f"delay_ms: 30, jitter_ms: 20, loss_share: 0.05, localisation: {{{NOISE}}}"
+    there = "measurements: {delay_ms: 10, jitter_ms: 20, loss_share: 0.05}"
+    link = f"delay_ms: 20, jitter_ms: 20, loss_share: 0.05, {there}, localisation: {{{NOISE}}}"
     judge(drives(sample, sample.of(1, 20), "hatchback", link, tmp_path), 3.0, 12.0, "hatchback, jitter and loss")
 
 

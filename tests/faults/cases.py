@@ -5,10 +5,12 @@ The first half of docs/faults.md; tests/faults/catalogue.py has the second, all 
 
 from collections.abc import Mapping
 from functools import cache
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from simconsole.evaluation.metrics.drive_metrics import metrics
+from simconsole.evaluation.metrics.table import drive_of
 from simconsole.profiles import faults as kinds
 from simconsole.profiles.faults import Fault, fault_label
 from simconsole.values.labels import mode_label, reason_label
@@ -17,6 +19,11 @@ from simconsole.values.state_vector import Snapshot
 from tests.faults.course import AUTOPILOT, BY_HAND, BY_HAND_ALONE, HZ, PLACES, WATCHED, Crew, Driven, circuit
 
 SECONDS: Final = 20.0
+KEPT: Final = (
+    *("arbitration.mode", "arbitration.reason", "arbitration.refusal", "command.road_wheel_rad", "events.faults"),
+    *("ros_link.implausible_ticks", "vehicle.x_m", "vehicle.y_m", "vehicle.yaw_rad", "vehicle.vx_mps"),
+)
+"""What is looked at of each drive."""
 AFTER_S: Final = 1.0
 """How long after the saved state the fault comes."""
 
@@ -83,6 +90,8 @@ class Measured(NamedTuple):
     fault: Fault
     after_ms: float | None
     """From the fault's first tick to the first tick of the reaction; None without one."""
+    found: Mapping[str, Any]
+    """The metrics of the drive."""
 
 
 def drive(case: Case, place: str, crew: Crew | None = None) -> Measured:
@@ -100,7 +109,13 @@ def _driven(index: int, place: str, crew: Crew) -> Measured:
     began = int(np.flatnonzero(driven.column("events.faults"))[0])
     mode = driven.column("arbitration.mode")
     changed = np.flatnonzero(mode[began:] != mode[began - 1])
-    return Measured(driven, fault, int(changed[0]) * 1000.0 / HZ if len(changed) else None)
+    whole = drive_of(driven.vectors, driven.columns, HZ, driven.first_tick)
+    return Measured(
+        driven=driven.only(KEPT),
+        fault=fault,
+        after_ms=int(changed[0]) * 1000.0 / HZ if len(changed) else None,
+        found=metrics(whole, driven.course, None, [fault_label(fault)]),
+    )
 
 
 _INTRODUCTION = """# What the console does about faults

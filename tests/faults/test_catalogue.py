@@ -1,6 +1,6 @@
-"""Every case of the catalogue has a test, and docs/faults.md says of each what its tests saw."""
+"""Every case of the catalogue has a test, and what these saw is kept by case."""
 
-from tests.faults import cases, figures
+from tests.faults import cases
 from tests.faults.catalogue import CATALOGUE, marks, places
 from tests.faults.figures import Seen, cells, lines, seen, table, updated
 
@@ -24,15 +24,6 @@ def test_a_mark_is_found_wherever_it_stands() -> None:
     source = '@pytest.mark.fault("D01")\ndef test_a(): ...\n\nX = pytest.param(1, marks=pytest.mark.fault("N02"))\n'
     assert sorted(marks(source)) == ["D01", "N02"]
     assert not list(marks('@pytest.mark.parametrize("fault", ["D01"])\ndef test_b(): ...'))
-
-
-def test_the_page_is_the_drives_and_the_catalogue() -> None:
-    """All but the last column, which holds what differs from run to run."""
-    text = figures.PAGE.read_text("utf-8")
-    measured = cells(text)
-    assert text == cases.page() + table(measured)
-    assert set(measured) == NUMBERS
-    assert "-" not in measured.values(), "a case without a test that passed: make faults"
 
 
 def test_figures_of_a_run_are_kept_by_case() -> None:

@@ -42,7 +42,7 @@ recorder = opening.LogRecorder
 def said():  # by an operator, in each third tick; the tick in work is the one after the last that began
     tick = begun[0] + 1
     return [b'{"tick":%d,"act":"mark","participant":"P07"}' % tick] if tick % 3 == 0 else []
-opening.LogRecorder = lambda log, take_acts, traffic: recorder(log, said, traffic)
+opening.LogRecorder = lambda log, take_acts, *sources: recorder(log, said, *sources)
 drive(resolved, folder / "warm", lambda snapshot: snapshot.tick >= 10)  # compiled and loaded, once for all
 def watch(snapshot):
     begun[0] = snapshot.tick  # shared memory: survives the kill, like nothing inside the process

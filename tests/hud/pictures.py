@@ -4,8 +4,10 @@ from typing import Any
 
 from simconsole.hud.draw import PALETTE, Colour, DrawItem, Text
 from simconsole.hud.layout import layout
-from simconsole.hud.screen import Screen
-from simconsole.hud.view import HudView
+from simconsole.hud.screen import LARGE_TEXT, Screen
+from simconsole.hud.view import HudSettings, HudView
+from simconsole.profiles.files.loader import load
+from simconsole.profiles.view import LanguageProfile
 from simconsole.values.labels import mode_label
 from simconsole.values.signals import Mode
 
@@ -15,6 +17,8 @@ SCREENS = {
     "triple": Screen(4200, 1050, 4.8, 2.2),
 }
 SCREEN = SCREENS["4:3"]
+LARGE = {name: screen._replace(text=LARGE_TEXT) for name, screen in SCREENS.items()}
+GERMAN = HudSettings(language=load("languages", "german", LanguageProfile))
 
 
 def in_mode(mode: Mode, **more: Any) -> HudView:

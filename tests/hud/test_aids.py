@@ -5,20 +5,23 @@ import pytest
 from simconsole.hud.aids import Aids, aid_panels
 from simconsole.hud.draw import Text, bounds, contrast
 from simconsole.hud.key_names import KEY_CODES, WindowKey, help_rows
-from simconsole.hud.screen import Screen, fit
+from simconsole.hud.screen import LARGE_TEXT, Screen, fit
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load
+from simconsole.profiles.view import ENGLISH, LanguageProfile
 from simconsole.values.key_codes import Key
-from tests.hud.pictures import SCREENS
+from tests.hud.pictures import GERMAN, SCREENS
 
 LINES = ("60 frames/s", "frame 16.7 ms, 99 %: 17.0 ms", "llvmpipe (LLVM 15.0.6, 256 bits)")
 ALL = [*SCREENS.values(), fit(SCREENS["4:3"], 640, 480).screen, fit(SCREENS["4:3"], 1366, 706).screen]
 
 
 @pytest.mark.parametrize("cockpit", ["keyboard", "t500rs_th8rs", "gamepad"])
-@pytest.mark.parametrize("screen", ALL)
-def test_help_and_times_are_legible_and_inside(cockpit: str, screen: Screen) -> None:
-    rows = help_rows(load("devices", cockpit, CockpitProfile), by_keyboard=cockpit == "keyboard")
+@pytest.mark.parametrize("screen", [*ALL, *(screen._replace(text=LARGE_TEXT) for screen in ALL)])
+@pytest.mark.parametrize("language", [ENGLISH, GERMAN.language], ids=["english", "german"])
+def test_help_and_times_are_legible_and_inside(cockpit: str, screen: Screen, language: LanguageProfile) -> None:
+    profile = load("devices", cockpit, CockpitProfile)
+    rows = help_rows(profile, by_keyboard=cockpit == "keyboard", language=language)
     panels = aid_panels(Aids(help=rows, times=LINES), screen)
     assert len(panels) == 2
     safe = screen.safe()

@@ -4,20 +4,21 @@ from itertools import combinations
 
 import pytest
 
-from simconsole.hud.draw import DANGER, WARNING_LINE, bounds, luminance
+from simconsole.hud.draw import DANGER, WARNING_LINE, DrawItem, bounds, luminance
+from simconsole.hud.guidance import Ahead
 from simconsole.hud.layout import check_screen, layout, places, sample_views
 from simconsole.hud.screen import Screen
 from simconsole.hud.view import HudView
 from simconsole.values.errors import ProfileError
 from simconsole.values.signals import Mode
-from tests.hud.pictures import SCREEN, SCREENS, asked, by_role, in_mode, texts
+from tests.hud.pictures import GERMAN, LARGE, SCREEN, SCREENS, asked, by_role, in_mode, shape_of, texts
 
-every_screen = pytest.mark.parametrize("screen", SCREENS.values(), ids=SCREENS)
+every_screen = pytest.mark.parametrize("screen", [*SCREENS.values(), *LARGE.values()], ids=[*SCREENS, *LARGE])
 
 
 @every_screen
 def test_nothing_is_within_five_percent_of_the_border(screen: Screen) -> None:
-    for view in sample_views():
+    for view in [*sample_views(), *sample_views(GERMAN)]:
         for item in layout(view, screen):
             box = bounds(item)
             if item.role == "ground":
@@ -30,24 +31,27 @@ def test_nothing_is_within_five_percent_of_the_border(screen: Screen) -> None:
 
 @every_screen
 def test_every_text_is_large_enough_for_the_seat(screen: Screen) -> None:
-    check_screen(screen, "hud")
-    for view in sample_views():
+    check_screen(screen, "hud", GERMAN)
+    for view in [*sample_views(), *sample_views(GERMAN)]:
         for item in texts(layout(view, screen)):
             assert item.arcmin in (16.0, 20.0, 60.0)
             assert item.cap_px / screen.px_per_arcmin >= item.arcmin
-            if item.role == "speed" and item.text != "NO DATA":
+            if item.role == "speed" and item.text.isdigit():
                 assert item.arcmin == 60.0
-            if item.role.startswith(("mode", "reason", "alert", "gear", "link.label")) and "automatic" not in item.role:
+            if (
+                item.role.startswith(("mode", "reason", "alert", "gear", "turn", "link.label"))
+                and "automatic" not in item.role
+            ):
                 assert item.arcmin >= 20.0
 
 
 @every_screen
 def test_no_two_texts_touch(screen: Screen) -> None:
-    for view in sample_views():
-        for one, other in combinations(texts(layout(view, screen)), 2):
-            a, b = bounds(one), bounds(other)
-            apart = a.right <= b.x or b.right <= a.x or a.bottom <= b.y or b.bottom <= a.y
-            assert apart, (one, other)
+    for view in [*sample_views(), *sample_views(GERMAN)]:
+        placed = [(*bounds(item), item) for item in texts(layout(view, screen))]
+        for (x, y, w, h, one), (other_x, other_y, other_w, other_h, other) in combinations(placed, 2):
+            beside = x + w <= other_x or other_x + other_w <= x
+            assert beside or y + h <= other_y or other_y + other_h <= y, (one, other)
 
 
 def test_a_seat_too_far_away_fails_at_start_up() -> None:
@@ -98,9 +102,38 @@ def test_no_text_is_empty_or_pure_blue_or_red() -> None:
 
 @every_screen
 def test_panels_do_not_overlap(screen: Screen) -> None:
-    for one, other in combinations(places(screen), 2):
+    for one, other in combinations([place for place in places(screen) if place is not None], 2):
         apart = one.right <= other.x or other.right <= one.x or one.bottom <= other.y or other.bottom <= one.y
         assert apart
+
+
+@every_screen
+@pytest.mark.parametrize("has_view", [False, True])
+def test_large_text_is_a_quarter_larger(screen: Screen, has_view: bool) -> None:
+    plain, large = screen._replace(has_view=has_view, text=1.0), screen._replace(has_view=has_view, text=1.25)
+    for view in sample_views(GERMAN):
+        for item in texts(layout(view, large)):
+            assert item.cap_px >= 1.25 * item.arcmin * plain.px_per_arcmin - 1e-9, item
+
+
+def test_large_text_keeps_what_a_driver_must_see() -> None:
+    shown = in_mode(
+        Mode.SHARED, shown_kmh=47, limit_kmh=50, gear="3", rpm=2300.0, remote_lateral=0.5, other_side="AUTOPILOT",
+        ahead=Ahead(350.0, 1.5), link_age_s=0.02, can_up=False, link="lost",
+    )  # fmt: skip
+    for screen in (LARGE["4:3"], LARGE["4:3"]._replace(has_view=True)):
+        words = {item.text for item in texts(layout(shown, screen))}
+        assert {"47", "50", "3", "SHARED", "50 %", "350 m", "CAN", "down", "LINK", "lost"} <= words
+
+
+def test_nothing_differs_in_colour_alone() -> None:
+    """Two views that look different differ in words or shapes."""
+    for screen in (SCREEN, SCREEN._replace(has_view=True)):
+        drawn: dict[tuple[object, ...], set[tuple[DrawItem, ...]]] = {}
+        for view in sample_views():
+            items = tuple(item for item in layout(view, screen))
+            drawn.setdefault(tuple(shape_of(item) for item in items), set()).add(items)
+        assert [len(same) for same in drawn.values()] == [1] * len(drawn)
 
 
 def test_layout_is_pure() -> None:

@@ -1,7 +1,8 @@
 import pytest
 
+from simconsole.hud.draw import Box
 from simconsole.hud.layout import check_screen
-from simconsole.hud.screen import Screen, fit, screen_of, window_size
+from simconsole.hud.screen import Screen, fit, fit_span, screen_of, window_size
 from simconsole.profiles.view import HudProfile
 from tests.hud.pictures import SCREEN, SCREENS
 
@@ -73,3 +74,20 @@ def test_the_seams_of_three_screens_stay_where_they_are() -> None:
     assert fitted.screen.is_triple
     assert fitted.has_bars
     assert not fit(SCREEN, 1400, 1050).has_bars
+
+
+def test_of_several_displays_one_has_the_picture() -> None:
+    displays = {0: Box(1280, 0, 1400, 1050), 1: Box(0, 0, 1280, 1024), 2: Box(2680, 0, 1280, 1024)}
+    fitted = fit_span(SCREENS["4:3"], displays, 0)
+    assert (fitted.window_width_px, fitted.window_height_px) == (3960, 1050)
+    assert (fitted.left_px, fitted.top_px) == (1280, 0)
+    assert fitted.screen == SCREENS["4:3"]
+    assert fitted.front() == Box(1280, 0, 1400, 1050)
+    assert fitted.display == 0
+    assert fitted.others == ((1, displays[1]), (2, displays[2]))
+    assert fitted.has_bars
+
+
+def test_the_middle_of_three_screens_is_before_the_driver() -> None:
+    assert fit(SCREENS["triple"], 4200, 1200).front() == Box(1400, 75, 1400, 1050)
+    assert fit(SCREENS["4:3"], 1400, 1050).front() == Box(0, 0, 1400, 1050)

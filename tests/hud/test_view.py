@@ -67,6 +67,12 @@ def test_a_speed_that_stays_is_reached_exactly_enough() -> None:
         assert abs(speeds([0.0, target, target])[-1] - target) <= 1.0
 
 
+def test_a_car_that_stands_shows_zero() -> None:
+    """Its model comes to rest ever more slowly: a speed that nobody sees is no 1 km/h."""
+    assert speeds([3.0, 1.0, 0.01, 0.001]) == [3, 1, 0, 0]
+    assert speeds([0.0, 0.3, 0.06, 0.3, 1.1, 0.3]) == [0, 0, 0, 0, 1, 1]
+
+
 def test_reversing_shows_no_minus() -> None:
     assert speeds([-7.0]) == [7]
 

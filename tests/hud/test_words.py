@@ -5,7 +5,8 @@ import pytest
 from simconsole.hud.banner import ALERT_LABELS, Alert
 from simconsole.hud.layout import layout
 from simconsole.hud.view import HudMemory, HudSettings, HudView, view
-from simconsole.hud.words import LONGEST_PRESS, MENDING, STEER_OR_BRAKE, next_step, other_side
+from simconsole.hud.words import LONGEST_BUTTON, MENDING, STEER_OR_BRAKE, next_step, other_side
+from simconsole.profiles.view import ENGLISH
 from simconsole.values.labels import reason_label
 from simconsole.values.signals import NEVER_TICKS, Commander, Mode, Reason, Validity
 from simconsole.values.state_vector import Snapshot
@@ -17,7 +18,7 @@ SETTINGS = HudSettings(manual_button="cross", reset_button="R2")
 
 
 def step(row: Snapshot) -> str:
-    return next_step(row, 0.1, "cross", "R2")
+    return next_step(row, ENGLISH, 0.1, "cross", "R2")
 
 
 def shown(row: Snapshot, memory: HudMemory | None = None) -> HudView:
@@ -87,8 +88,8 @@ def test_the_next_step_is_told_with_the_buttons_name(mode: Mode, speed_mps: floa
 
 def test_a_step_without_a_button_is_the_operators() -> None:
     for mode in (Mode.STOPPED, Mode.EMERGENCY_STOP):
-        assert next_step(snapshot(arbitration__mode=mode, **LIVE), 0.1, "", "") == "ask the operator"
-    assert next_step(snapshot(arbitration__mode=Mode.STOPPED, **LIVE), 0.1, "", "R2") == "press R2 to drive"
+        assert next_step(snapshot(arbitration__mode=mode, **LIVE), ENGLISH, 0.1, "", "") == "ask the operator"
+    assert next_step(snapshot(arbitration__mode=Mode.STOPPED, **LIVE), ENGLISH, 0.1, "", "R2") == "press R2 to drive"
 
 
 def test_a_stopped_car_tells_why_it_has_stopped() -> None:
@@ -122,7 +123,7 @@ def test_all_that_an_alert_can_say_is_at_most_seven_words() -> None:
     for alert, todos in steps.items():
         for todo in todos:
             assert len(f"{ALERT_LABELS[alert][0]} {todo}".split()) <= 7, (alert, todo)
-    assert len(LONGEST_PRESS) >= len("press  to reset") + 16
+    assert len(LONGEST_BUTTON) == 16
 
 
 @pytest.mark.parametrize("gear", ["N", "R", "6"])

@@ -26,6 +26,8 @@ OPTIONS = (
     "--disable-background-networking",
 )
 
+BETWEEN_PAGES = "Not attached to an active page"
+
 
 class Page:
     """One page."""
@@ -40,13 +42,17 @@ class Page:
 
     def call(self, method: str, **parameters: Any) -> dict[str, Any]:
         """Return a method's result."""
+        heard = self._reply(method, **parameters)
+        assert "error" not in heard, heard
+        return dict(heard["result"])
+
+    def _reply(self, method: str, **parameters: Any) -> dict[str, Any]:
         self._number += 1
         self._web.send(json.dumps({"id": self._number, "method": method, "params": parameters}))
         while True:
             heard = json.loads(self._web.recv(timeout=PATIENCE_S))
             if heard.get("id") == self._number:
-                assert "error" not in heard, heard
-                return dict(heard["result"])
+                return dict(heard)
             if heard.get("method") == "Runtime.exceptionThrown":
                 self.complaints.append(heard["params"]["exceptionDetails"])
             elif heard.get("method") == "Runtime.consoleAPICalled" and heard["params"]["type"] in ("error", "warning"):
@@ -60,7 +66,16 @@ class Page:
 
     def screenshot(self) -> bytes:
         """Return the picture of it as a PNG."""
-        return base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])
+
+        def taken() -> str | None:
+            """Return it; None while the browser is between two pages."""
+            heard = self._reply("Page.captureScreenshot", format="png")
+            if heard.get("error", {}).get("message") == BETWEEN_PAGES:
+                return None
+            assert "error" not in heard, heard
+            return str(heard["result"]["data"])
+
+        return base64.b64decode(wait_until(taken, "a page") or "")
 
 
 @contextmanager

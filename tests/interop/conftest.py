@@ -1,6 +1,6 @@
 """A console in a graph with one node that does what it is told, for the tests of one file together."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import pytest
 
@@ -10,8 +10,13 @@ from tests.interop.ros2 import domain
 
 
 @pytest.fixture(scope="module")
-def sides() -> Iterator[tuple[Served, Puppet]]:
-    around = domain()
+def around() -> Mapping[str, str]:
+    """The environment of one graph."""
+    return domain()
+
+
+@pytest.fixture(scope="module")
+def sides(around: Mapping[str, str]) -> Iterator[tuple[Served, Puppet]]:
     with served(around) as console, puppet(around) as node:
         yield console, node
 
@@ -25,3 +30,9 @@ def web(sides: tuple[Served, Puppet]) -> Iterator[Client]:
 @pytest.fixture
 def node(sides: tuple[Served, Puppet]) -> Puppet:
     return sides[1]
+
+
+@pytest.fixture
+def other_node(around: Mapping[str, str], sides: tuple[Served, Puppet]) -> Iterator[Puppet]:
+    with puppet(around, "other") as made:
+        yield made

@@ -41,6 +41,15 @@ class Puppet:
         except queue.Empty:
             return None
 
+    def hears(self, wanted: Callable[[dict[str, Any]], Any], within_s: float = 1.0) -> bool:
+        """Whether a remark that is wanted comes within a while after the last."""
+        try:
+            while not wanted(self._said.get(timeout=within_s)):
+                pass
+        except queue.Empty:
+            return False
+        return True
+
     def answers(self, word: str, name: str, count: int) -> dict[int, dict[str, Any]]:
         """The `count` remarks on calls or goals of one name, by number."""
         found: dict[int, dict[str, Any]] = {}

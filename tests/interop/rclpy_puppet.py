@@ -126,9 +126,11 @@ class Puppet(Node):  # type: ignore[misc]  # rclpy has no types here
 
         threading.Thread(target=send, daemon=True).start()
 
-    def _do_act(self, name: str, step_s: float = 0.0) -> None:
+    def _do_act(self, name: str, step_s: float = 0.0, tells: bool = False) -> None:
         async def pursue(goal: Any) -> Any:
             sequence = [0, 1]
+            if tells:
+                say(pursues=goal.request.order)
             while len(sequence) <= goal.request.order:
                 if goal.is_cancel_requested:
                     goal.canceled()

@@ -1,5 +1,6 @@
 """Nothing is lost in a burst of calls or goals through the relay, and each has its end; against a real rclpy."""
 
+import itertools
 from typing import Any
 
 import pytest
@@ -140,6 +141,43 @@ def test_goals_end_whose_server_is_replaced_at_once(web: Client, node: Puppet) -
         ended.add(heard["id"])
     web.say(**{**goal, "args": {"order": 3}}, id=9)
     assert web.hear(lambda heard: heard["op"] == "action_result")["status"] == SUCCEEDED
+
+
+@pytest.mark.parametrize("leaves", ["the first", "the second"])
+def test_a_goal_of_two_servers_ends_when_one_leaves(web: Client, node: Puppet, other_node: Puppet, leaves: str) -> None:
+    """Both know it, and nobody knows which one's acceptance was heard."""
+    name = f"/ros/twice_{leaves[4:]}"
+    for each in (node, other_node):
+        each.do("act", name=name, step_s=1.0, tells=True)
+    wait_for(web, "action_servers", "action_servers", name)
+    orders = itertools.count(0, -1)  # of no steps
+
+    def both_are_heard() -> bool:
+        """Send a short goal; whether both servers have it: all ends have found each other then."""
+        order = next(orders)
+        web.say(**twice(name, order), id=order)
+        web.hear(lambda heard: heard["op"] == "action_result" and heard["id"] == order)
+        return all(each.hears(lambda said: said.get("pursues") == order) for each in (node, other_node))
+
+    wait_until(both_are_heard, "a goal that both servers have")
+    web.say(**twice(name, 600), id=600)
+    for each in (node, other_node):
+        each.hear(lambda said: said.get("pursues") == 600)
+    web.hear(lambda heard: heard["op"] == "action_feedback" and heard["id"] == 600)
+    (node if leaves == "the first" else other_node).do("destroy", kind="action server", name=name)
+    heard = web.hear(lambda heard: heard["op"] == "action_result" and heard["id"] == 600)
+    assert (heard["result"], heard["status"]) == (False, ABORTED)
+    assert "has left the graph" in heard["values"]
+
+
+def twice(name: str, order: int) -> dict[str, Any]:
+    return {
+        "op": "send_action_goal",
+        "action": name,
+        "action_type": FIBONACCI,
+        "args": {"order": order},
+        "feedback": True,
+    }
 
 
 @pytest.mark.parametrize("all_at_once", [False, True])

@@ -205,6 +205,44 @@ def test_nothing_is_drawn_beyond_the_newest_pose_and_a_new_drive_begins_at_its_s
     assert [time for time, _ in seen] == pytest.approx([1.0, 1.01, 1.02, 1.04, 1.055, 0.02])
 
 
+OTHERS = """
+import { Group, Mesh, MeshStandardMaterial } from "three";
+import { Others } from "./src/others.js";
+const map = new Group(), others = new Others(map), seen = [];
+for (const users of JSON.parse(process.argv[1])) {
+  others.takeUsers({ users });
+  seen.push(map.children.map((box) => [...box.position.toArray(), ...box.scale.toArray()]));
+}
+const lamps = ["red", "amber", "green"].map((name) => {
+  const lamp = new Mesh(undefined, new MeshStandardMaterial());
+  return Object.assign(lamp, { name: `signal_0_${name}`, userData: { signal: "a", link: 1 } });
+});
+for (const state of [3, 4, 6, 8, 1]) {
+  others.takeSignals({ signals: [{ id: "b", states: [3, 3] }, { id: "a", states: [6, state] }] }, lamps);
+  seen.push(lamps.map(({ material }) => material.emissive.getHex() !== 0));
+}
+console.log(JSON.stringify(seen));
+"""
+
+
+def test_others_are_boxes_on_the_road_and_lamps_shine(built: Path) -> None:
+    still = {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}
+
+    def user(number: int, x_m: float) -> dict[str, Any]:
+        place = {"position": {"x": x_m, "y": 2.0, "z": 1.0}, "orientation": still}
+        return {"id": number, "kind": 1, "pose": place, "size": {"x": 4.4, "y": 1.8, "z": 1.5}}
+
+    told = json.dumps([[user(1, 10.0), user(2, 20.0)], [user(2, 21.0)]])
+    words = [str(shutil.which("node")), "--input-type=module", "--eval", OTHERS, told]
+    done = subprocess.run(words, cwd=built.parent, capture_output=True, text=True, timeout=PATIENCE_S)
+    assert done.returncode == 0, done.stderr
+    first, second, *lamps = json.loads(done.stdout)
+    assert first == [[10.0, 2.0, 1.75, 4.4, 1.8, 1.5], [20.0, 2.0, 1.75, 4.4, 1.8, 1.5]]
+    assert second == [[21.0, 2.0, 1.75, 4.4, 1.8, 1.5]]
+    red, amber, green, dark = [True, False, False], [False, True, False], [False, False, True], [False] * 3
+    assert lamps == [red, [True, True, False], green, amber, dark]
+
+
 def shown(page: Page) -> dict[str, Any]:
     """What the page says it shows."""
     state: dict[str, Any] | None = page.value("globalThis.view?.()")

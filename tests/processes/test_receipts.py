@@ -5,9 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from simconsole.processes.receipts import Receipts
+from simconsole.processes.receipts import Receipts, latencies_of
 from simconsole.processes.shared_memory import Record
-from simconsole.session.paced import worker_latencies
 from simconsole.session.worker_programs import LATENCY
 from tests.values.test_latency import Clock
 
@@ -31,7 +30,7 @@ def test_a_worker_that_is_late_is_found_at_receive_or_at_draw(tmp_path: Path, re
         receipts.received(record(number, published_ns))  # the same again: neither received nor drawn
         receipts.drawn()
         clock.now_ns += 10_000_000
-    found = worker_latencies(tmp_path)
+    found = latencies_of(tmp_path, LATENCY)
     assert list(found) == ["receive, hud", "draw, hud"]
     assert found["receive, hud"]["max"] == receive_ns / 1e3
     assert found["draw, hud"]["max"] == draw_ns / 1e3
@@ -46,5 +45,5 @@ def test_a_full_disk_of_the_run_folder_harms_no_worker(tmp_path: Path) -> None:
     (tmp_path / "gone").mkdir()
     clock.now_ns += 2_000_000_000
     receipts.received(record(2, clock.now_ns))
-    found = worker_latencies(tmp_path / "gone")
+    found = latencies_of(tmp_path / "gone", LATENCY)
     assert found["receive, hud"]["count"] == 2, "counted all the same, and saved when it can be"

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from simconsole.processes.lifetimes import close_pipe, spawn
+from simconsole.processes.notices import Notice, NoticeReader
 from simconsole.processes.shared_memory import Ring, make_run_folder
 from simconsole.processes.supervisor import SupervisorHandle, SupervisorSpec
 from simconsole.processes.worker import WorkerSpec
@@ -321,3 +322,21 @@ def mappings_of(folder: Path) -> list[str]:
         except OSError:
             continue
     return found
+
+
+def test_that_a_worker_was_started_again_is_told_with_how_it_ended(
+    start: Callable[..., SupervisorHandle], programs: str, wait_until: Wait
+) -> None:
+    supervisor = start(worker(programs, "one"))
+    wait_until(lambda: said(supervisor.folder, "one"))
+    reader = NoticeReader(supervisor.folder)
+    assert reader.take() == []
+    os.kill((said(supervisor.folder, "one") or {})["pid"], signal.SIGKILL)
+    told: list[Notice] = []
+
+    def heard() -> bool:
+        told.extend(reader.take())
+        return bool(told)
+
+    wait_until(heard)
+    assert told == [Notice("WARN", "supervisor: the one worker has ended (signal 9) and is started again")]

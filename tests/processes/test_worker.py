@@ -9,10 +9,14 @@ import pytest
 
 from simconsole.processes.worker import Worker, WorkerCall, WorkerSpec, load_worker
 from simconsole.profiles.can import CanProfile
-from simconsole.session.worker_programs import CanWorker, SceneWorker
+from simconsole.session.resolution import load_session, resolve
+from simconsole.session.scene_worker import SceneWorker, scene_source
+from simconsole.session.worker_programs import CanWorker
 from simconsole.values.errors import WorkerError
 
-SCENE = SceneWorker(path="/tmp/scene.rrd", tick_hz=250, has_bridge=True)
+SCENE = SceneWorker(
+    path="/tmp/scene.rrd", source=scene_source(resolve(load_session("demo")), ("vehicle.x_m",), 250), has_bridge=True
+)
 CAN = CanWorker(profile=CanProfile(), tick_hz=500, wheels=(7, 8, 9, 10), bundle="/tmp/bundle")
 
 
@@ -27,7 +31,7 @@ def test_a_worker_is_the_same_on_the_other_side(worker: Worker) -> None:
     [
         ("simconsole.nowhere:Any", "{}", "No module named 'simconsole.nowhere'"),
         ("simconsole.session.worker_programs:Nothing", "{}", "has no attribute 'Nothing'"),
-        ("simconsole.session.worker_programs:SceneWorker", '{"path": "s.rrd"}', "missing required field `tick_hz`"),
+        ("simconsole.session.scene_worker:SceneWorker", '{"path": "s.rrd"}', "missing required field `source`"),
     ],
 )
 def test_what_does_not_fit_is_named(target: str, configuration: str, why: str) -> None:

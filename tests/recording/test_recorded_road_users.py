@@ -7,14 +7,14 @@ from simconsole.recording.framing import Message
 from simconsole.recording.log_header import ROAD_USERS, LogHeader, message_stream, vector_stream
 from simconsole.recording.recorded_road_users import recorded_road_users
 from simconsole.values.errors import RecordingError
-from simconsole.world.traffic.road_users import FIELDS, NOBODY, to_bytes
+from simconsole.world.traffic.road_users import ENCODING, FIELDS, NOBODY, to_bytes
 
 
 class Recorded:
     """A recording with these messages of road users; None: without such a stream."""
 
     def __init__(self, messages: list[Message] | None) -> None:
-        streams = (vector_stream(("a",), 0), *(() if messages is None else (message_stream(ROAD_USERS, "float64"),)))
+        streams = (vector_stream(("a",), 0), *(() if messages is None else (message_stream(ROAD_USERS, ENCODING),)))
         self.header = LogHeader(tick_hz=250, streams=streams, console_version="", source_sha256="", session_sha256="")
         self._messages = messages
 

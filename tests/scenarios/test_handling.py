@@ -32,7 +32,7 @@ KINDS = {
         "light_throttle",
         "clutch_protection",
     ),
-    *("hill_van_20", "hill_van_25", "hill_slippery", "launch_slippery"),
+    *("hill_van_20", "hill_van_25", "hill_slippery", "launch_slippery", "hill_start_25", "hill_wheelspin_25"),
     *("straight_braking_30", "straight_braking_60", "dive", "bend_braking", "bend_braking_van", "lift_off"),
 }
 

@@ -5,15 +5,21 @@ from numpy.typing import ArrayLike
 
 from simconsole.profiles.view import SceneProfile
 from simconsole.scene.entities import Dimensions
+from simconsole.scene.timeline import ShownVehicle
 from simconsole.scene.viewer.job import Job
+from simconsole.scene.wheel_shapes import ShownWheel
 from simconsole.values.platform import Pose
 from simconsole.values.signals import Event, Mode, Reason
 from simconsole.values.state_vector import columns
+from simconsole.vehicle.car.state import CarState
 from simconsole.world.drawing import Drawing
 from simconsole.world.drawing_layers import Light
+from simconsole.world.path_geometry import Piece
+from simconsole.world.route import Route, Stretch
 
-COLUMNS = columns(Pose)
+COLUMNS = columns(CarState)
 TICK_HZ = 250
+RADIUS_M = 50.0
 CHANGES = (  # from tick, mode, reason
     (1, Mode.PARKED, Reason.START),
     (300, Mode.MANUAL, Reason.PERSON_ASKED),
@@ -51,6 +57,14 @@ def rows(count: int) -> np.ndarray:
     return table
 
 
+def route() -> Route:
+    """Return the middle of the round road, once round to the left."""
+    length_m = 2.0 * np.pi * RADIUS_M
+    return Route(
+        [Stretch(0.0, Pose(0.0, 0.0, 0.0), Piece(length_m, 1.0 / RADIUS_M, 1.0 / RADIUS_M), 13.9)], closed=True
+    )
+
+
 def drawing() -> Drawing:
     """Return a round road."""
     angle = np.linspace(0.0, 2.0 * np.pi, 121)
@@ -61,12 +75,23 @@ def drawing() -> Drawing:
     return Drawing((square,), (), (inside, outside), (path,), (square + 3.0,), (), (Light(5.0, -3.0, 0.0),), path)
 
 
-def job(with_course: bool = True) -> Job:
-    """Return the drive's scene job."""
+WHEELS = tuple(
+    ShownWheel(x_m, y_m, 0.31, 3400.0, 2.1e5, stiffness_x_per_m=260.0, stiffness_y_per_m=190.0, friction=1.05)
+    for x_m in (2.5, 0.0)
+    for y_m in (0.75, -0.75)
+)
+
+
+def job(kind: str = "car") -> Job:
+    """Return the drive's scene job: of a car on the round road, or of a ball on nothing."""
+    if kind == "ball":
+        return Job(COLUMNS, TICK_HZ, Dimensions(1.0, 1.0, 1.0, 0.5), drawing=None, profile=SceneProfile())
     return Job(
         columns=COLUMNS,
         tick_hz=TICK_HZ,
         dimensions=Dimensions(4.2, 1.8, 1.5, 0.8),
-        drawing=drawing() if with_course else None,
+        drawing=drawing(),
         profile=SceneProfile(),
+        vehicle=ShownVehicle(wheelbase_m=2.5, wheels=(WHEELS[0], WHEELS[1], WHEELS[2], WHEELS[3])),
+        route=route(),
     )

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from simconsole.scene.viewer.job import save_job
+from tests.paths import ROOT
 from tests.samples import Measured, Sample
-from tests.scene.drives import job, rows
+from tests.scene.drives import rows
 
 # Every call of the ring is a second of the drive: as many pieces an hour as in a seated one.
 FEEDER = """
@@ -18,11 +18,11 @@ from pathlib import Path
 import numpy as np
 from simconsole.values.state_vector import Snapshot
 from simconsole.scene.viewer import follow
-from simconsole.scene.viewer.job import load_job
+from tests.scene.drives import job as make_job
 
 follow.POLL_S = 0.0
 folder = Path(sys.argv[1])
-job, rows = load_job(folder / "job.npz"), np.load(folder / "rows.npy")
+job, rows = make_job(), np.load(folder / "rows.npy")
 seconds, tick, second = 60 * int(sys.argv[3]), 0, 0
 def new_ticks():
     global tick, second
@@ -46,10 +46,9 @@ def test_the_scene_of_a_long_drive_takes_no_more_memory_than_that_of_a_short_one
     tmp_path: Path, sample: Sample, measured: Measured
 ) -> None:
     minutes = sample.of(WARM_MIN + 15, 8 * 60)
-    save_job(tmp_path / "job.npz", job())
     np.save(tmp_path / "rows.npy", rows(7500))
     command = [sys.executable, "-c", FEEDER, str(tmp_path), str(tmp_path / "scene.rrd"), str(minutes)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT)
     assert done.returncode == 0, done.stderr
     resident = np.array(done.stdout.split(), dtype=np.int64)[WARM_MIN:]
     part = max(1, len(resident) // 3)

@@ -4,7 +4,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from simconsole.scene.timeline import NEEDED, PLOTS, Entry, Memory, Piece, lane_label, piece, quaternions
+from simconsole.scene.plots import PLOTS
+from simconsole.scene.timeline import NEEDED, Entry, Memory, Piece, piece, quaternions
 from simconsole.values.signals import Event, Mode
 from tests.scene.drives import CHANGES, COLUMNS, TICK_HZ, rows
 
@@ -51,8 +52,8 @@ def test_mode_changes_keep_their_exact_tick(whole: Piece) -> None:
 def test_take_over_and_gear_have_lanes(whole: Piece) -> None:
     lanes = {lane.path: lane for lane in whole.lanes}
     assert lanes["lanes/takeover"].states == ["none", "asked", "none"]
-    assert lanes["lanes/transmission"].states == ["N", "1", "2"]
-    assert lanes["lanes/transmission"].times_ns == [tick * NS_PER_TICK for tick in (1, 300, 900)]
+    assert lanes["controls/gear"].states == ["N", "1", "2"]
+    assert lanes["controls/gear"].times_ns == [tick * NS_PER_TICK for tick in (1, 300, 900)]
 
 
 def test_the_log_tells_modes_reasons_refusals_and_events_in_order(whole: Piece) -> None:
@@ -161,12 +162,6 @@ def test_the_needed_columns_are_columns_of_a_state_vector() -> None:
     thin, _ = piece(table, NEEDED, np.arange(1, COUNT + 1), TICK_HZ, 50, Memory())
     assert (thin.positions == only.positions).all()
     assert thin.entries == only.entries
-
-
-def test_a_lane_names_an_unknown_value() -> None:
-    assert lane_label("lanes/takeover", 7.0) == "7"
-    assert lane_label("lanes/mode", 42.0) == "MODE 42"
-    assert lane_label("lanes/transmission", -1.0) == "R"
 
 
 def test_this_folder_has_no_picture_committed() -> None:

@@ -31,14 +31,14 @@ mode: {pacing: lockstep, tick_hz: 250, answer_timeout_s: 60}
 
 
 def test_the_models_are_those_of_the_frames() -> None:
-    job = ViewJob(None, 30.0, Size(3.99, 1.75, 1.45, 0.75, 2.5), 15.0)
-    view = external_view(job, HudSettings())
+    job = ViewJob(None, (), Size(3.99, 1.75, 1.45, 0.75, 2.5), 15.0)
+    view = external_view(job, HudSettings(limit_kmh=30.0))
     assert [model.frame for model in view.models] == ["map", "base_link"]
     assert all(model.content.startswith(b"glTF") for model in view.models)
     frames = view.frames(snapshot(vehicle__x_m=4.0, vehicle__yaw_rad=0.5))
     assert frames[0] == ("map", "base_link", (4.0, 0.0, 0.0), (0.0, 0.0, 0.5))
     assert len(frames) == 6
-    assert view.reading(snapshot())["speed_limit"] == pytest.approx(30.0 / 3.6)
+    assert view.reading(snapshot(situation__lane=-1.0))["speed_limit"] == pytest.approx(30.0 / 3.6)
 
 
 def test_a_session_without_a_display_has_the_rules_of_the_drive() -> None:

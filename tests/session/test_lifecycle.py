@@ -57,6 +57,16 @@ def test_who_watches_may_end_it_and_equal_ticks_are_equal(resolved: ResolvedSess
     assert not first.interrupted
 
 
+def test_who_is_only_shown_a_drive_does_not_make_it_tick_by_tick(resolved: ResolvedSession, tmp_path: Path) -> None:
+    shown: list[int] = []
+    watched = drive(resolved, tmp_path / "watched", lambda found: False)
+    result = drive(resolved, tmp_path / "shown", show=lambda found: shown.append(found.tick))
+    assert result.digest == watched.digest
+    assert shown == sorted(shown)
+    assert shown[-1] > 0.8 * result.ticks
+    assert len(shown) < 0.2 * result.ticks
+
+
 def test_what_workers_wrote_beside_the_log_is_listed_once_they_have_ended(
     resolved: ResolvedSession, tmp_path: Path
 ) -> None:

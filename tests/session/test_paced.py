@@ -18,7 +18,10 @@ from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.replay_bundle import replay_bundle
 from simconsole.recording.bundles.verification import verify
 from simconsole.recording.reading import LogTable
-from simconsole.session.worker_programs import KEY_CODES, SNAPSHOTS, snapshot_of
+from simconsole.recording.recorded_plans import recorded_plans
+from simconsole.session.paced import bridge_address, wait_for_can
+from simconsole.session.worker_programs import ADDRESS, KEY_CODES, SNAPSHOTS, snapshot_of
+from simconsole.values.errors import CanError
 from simconsole.values.key_codes import Key
 from simconsole.values.signals import Event, Mode, Reason
 from simconsole.values.state_vector import Snapshot
@@ -26,6 +29,7 @@ from tests.drives.console import Running, results
 from tests.faults.lives import holders, standard_input
 from tests.patience import Stopwatch, wait_until
 from tests.samples import Measured
+from tests.scene.viewer.test_export import contents
 
 TICK_HZ = 250
 WORKERS = {"bridge", "hud", "scene", "sound"}
@@ -230,6 +234,20 @@ def test_ctrl_c_leaves_a_whole_bundle_and_code_130(disturbed: Disturbed) -> None
     assert ended.tolist() == [len(disturbed.table.ticks) - 1], "the vehicle stood already"
 
 
+def test_what_the_autopilot_planned_is_recorded_and_shown(disturbed: Disturbed) -> None:
+    plans = list(recorded_plans(open_bundle(disturbed.bundle).log))
+    assert len(plans) > 5
+    told_s = np.array([plan.t_ns for plan in plans]) / 1e9
+    assert (np.diff(told_s) > 0.1).all(), "five in a second"
+    ticks = disturbed.table.ticks
+    x_m, y_m = (disturbed.table.column(f"vehicle.{axis}_m") for axis in "xy")
+    for at_s, plan in zip(told_s, plans, strict=True):
+        row = int(np.searchsorted(ticks, at_s * TICK_HZ))
+        assert np.hypot(plan.places[0, 1] - x_m[row], plan.places[0, 2] - y_m[row]) < 5.0, "it begins where the car is"
+    shown = contents(disturbed.bundle / "scene.rrd")
+    assert shown["/world/path/plan"] >= 1 + len(plans)
+
+
 def test_the_bundle_tells_the_latency_of_each_hop_in_all_processes(disturbed: Disturbed) -> None:
     hops = open_bundle(disturbed.bundle).manifest.summary["latency_us"]
     chain = ["device", "read", "take", "decide", "step", "feel", "record", "publish", "others"]
@@ -291,3 +309,18 @@ def test_closing_the_window_ends_the_drive_in_order(tmp_path: Path) -> None:
         assert verify(driven.bundle) == []
         events = open_bundle(driven.bundle).log.table().column("events.events")
         assert int(events[-1]) & Event.END, "at rest, and the log says that somebody has ended it"
+
+
+def test_a_worker_that_is_slow_is_not_taken_for_one_that_has_failed(tmp_path: Path) -> None:
+    looks = iter(range(3))
+
+    def alive() -> bool:
+        if next(looks) == 2:
+            (tmp_path / ADDRESS).write_text("ws://127.0.0.1:9090")
+        return True
+
+    assert bridge_address(tmp_path, alive) == "ws://127.0.0.1:9090"
+    with pytest.raises(CanError, match=r"the CAN bus is not open within 0\.1 s"):
+        wait_for_can(tmp_path, lambda: True, patience_s=0.1)
+    with pytest.raises(CanError, match="the worker's own message stands above"):
+        wait_for_can(tmp_path, lambda: False)

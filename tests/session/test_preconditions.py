@@ -1,7 +1,12 @@
+import errno
+import socket
+
 import pytest
 
+from simconsole.bridge.transport import sockets
+from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.session import SessionProfile
-from simconsole.session.preconditions import check_commander
+from simconsole.session.preconditions import check_address, check_commander
 from simconsole.session.resolution import load_session, override
 from simconsole.values.errors import ProfileError
 
@@ -44,3 +49,19 @@ def test_a_bag_commands_only_where_no_other_controller_is_waited_for(changes: di
     check_commander(override(session, mode={"pacing": "free"}))
     with pytest.raises(ProfileError, match=r"features\.commands: value bag:drive\.mcap: mode\.pacing free"):
         check_commander(override(session, **changes))
+
+
+def test_a_client_that_comes_while_the_port_is_checked_is_not_let_in(monkeypatch: pytest.MonkeyPatch) -> None:
+    answers: list[int] = []
+    take = sockets.bind
+
+    def visited(host: str, port: int) -> socket.socket:
+        """Return the socket of the check, after a client has tried to come in."""
+        taken = take(host, port)
+        with socket.socket() as client:
+            answers.append(client.connect_ex(taken.getsockname()))
+        return taken
+
+    monkeypatch.setattr(sockets, "bind", visited)
+    check_address(BridgeProfile(port=0))
+    assert answers == [errno.ECONNREFUSED]

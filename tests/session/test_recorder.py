@@ -60,3 +60,21 @@ def test_acts_go_into_the_tick_in_which_they_arrived_and_into_the_summary() -> N
     assert log.messages == [(2, "acts", act) for act in arrived[1]]
     acts = [{"tick": 1, "act": "mark", "note": "cut in"}, {"tick": 1, "act": "estop"}]
     assert recorder.acts_summary() == {"acts": acts}
+
+
+class Source:
+    """Somebody whose messages the log keeps."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def take_messages(self) -> list[tuple[str, bytes]]:
+        return [(self._name, b"said")]
+
+
+def test_messages_of_all_sources_go_with_the_tick() -> None:
+    log = Log()
+    sources = Source("road_users"), None, Source("own")
+    recorder = LogRecorder(log, list, *sources)  # type: ignore[arg-type]
+    assert recorder.write(snapshot(1)) == 0
+    assert log.messages == [(1, "road_users", b"said"), (1, "own", b"said")]

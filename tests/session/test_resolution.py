@@ -6,7 +6,15 @@ from simconsole.profiles.files import loader as profile_files
 from simconsole.profiles.files.loader import names, profiles_folder
 from simconsole.profiles.session import SessionProfile
 from simconsole.profiles.vehicle import CarProfile
-from simconsole.session.resolution import load_scenario, load_session, override, resolve
+from simconsole.session.resolution import (
+    headless,
+    load_scenario,
+    load_session,
+    override,
+    parted,
+    resolve,
+    with_named_values,
+)
 from simconsole.values.errors import ProfileError
 
 
@@ -145,3 +153,52 @@ def test_a_vehicles_own_file_lies_beside_the_session_or_the_scenario_that_names_
     session.write_text("schema: 1\nscenario: {vehicle: ../mine}\n")
     with pytest.raises(ProfileError, match=r"scenario.vehicle"):
         load_session(str(session))
+
+
+def test_keys_belong_to_the_session_or_to_what_it_names() -> None:
+    values = {"environment.friction": 0.5, "body.mass_kg": 1600, "cockpit.title": "mine", "mode.tick_hz": 50}
+    of_session, of_named = parted(values)
+    assert list(of_session) == ["environment.friction", "mode.tick_hz"]
+    assert list(of_named) == ["body.mass_kg", "cockpit.title"]
+
+
+def test_no_key_of_a_vehicle_is_taken_for_one_of_a_session() -> None:
+    """Without a prefix a key is the vehicle's unless a section of sessions has its name."""
+    sections = {*SessionProfile.__struct_fields__, "vehicle", "cockpit", "world"}
+    assert not sections & {*CarProfile.__struct_fields__}
+
+
+def test_named_values_change_each_profile_that_they_name() -> None:
+    resolved = resolve(load_session("bridge"))
+    values = {
+        "body.mass_kg": 1600,
+        "vehicle.body.height_m": 1.6,
+        "cockpit.title": "mine",
+        "world.speed_limit_kmh": 30.0,
+    }
+    changed = with_named_values(resolved, values, "test")
+    assert isinstance(changed.vehicle, CarProfile)
+    assert (changed.vehicle.body.mass_kg, changed.vehicle.body.height_m) == (1600.0, 1.6)
+    assert (changed.cockpit.title, getattr(changed.world, "speed_limit_kmh", None)) == ("mine", 30.0)
+    assert changed.session == resolved.session
+
+
+def test_headless_is_without_window_and_clock_but_stays_in_lockstep() -> None:
+    seated, ball = headless(load_session("seated")), headless(load_session("roll_a_ball"))
+    assert (seated.outputs.hud, seated.mode.pacing) == (None, "free")
+    assert ball.mode.pacing == "lockstep"
+
+
+def test_the_displays_language_is_the_profiles_or_the_command_lines(tmp_path: Path) -> None:
+    seated = load_session("seated")
+    assert resolve(seated).language.title == "English"
+    assert resolve(seated, language="german").language.words["YOU"] == "SIE"
+    (tmp_path / "own.yaml").write_text('schema: 1\ntitle: Own\nwords: {"YOU": "PERSON"}\n')
+    session = tmp_path / "session.yaml"
+    session.write_text("schema: 1\noutputs: {hud: {language: own.yaml}}\n")
+    assert resolve(load_session(str(session))).language.words == {"YOU": "PERSON"}
+    (tmp_path / "own.yaml").write_text('schema: 1\ntitle: Own\nwords: {"YUO": "PERSON"}\n')
+    with pytest.raises(ProfileError, match=r'own\.yaml: words: value "YUO": "YOU"'):
+        resolve(load_session(str(session)))
+    with pytest.raises(ProfileError, match="klingon"):
+        resolve(seated, language="klingon")

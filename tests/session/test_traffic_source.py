@@ -19,7 +19,7 @@ from simconsole.session.traffic_source import TrafficSource, ego_box, open_traff
 from simconsole.tick.assembly import ResolvedSession, assemble
 from simconsole.values.errors import ProfileError
 from simconsole.values.host.jit import compiled
-from simconsole.values.signals import FAR, Event
+from simconsole.values.signals import FAR
 from simconsole.values.state_vector import Snapshot
 from simconsole.world.kinds.worlds import open_world
 from simconsole.world.traffic import traffic as modelled
@@ -135,7 +135,7 @@ class _InTheWay:
     def step(self, ego: Box) -> np.ndarray:
         self.steps += 1
         beside = 0.0 if self.steps > 1 else 50.0
-        return np.array([(7.0, 1.0, ego.x_m + beside, ego.y_m, 0.3, 0.0, 4.5, 1.8, 1.5)])
+        return np.array([(7.0, 1.0, ego.x_m + beside, ego.y_m, 0.3, 0.0, 4.5, 1.8, 1.5, 0.0, 0.0)])
 
 
 def test_first_touch_of_a_road_user_is_one_event() -> None:
@@ -144,8 +144,8 @@ def test_first_touch_of_a_road_user_is_one_event() -> None:
     events = []
     for tick in range(1, 6):
         source.publish(Snapshot(tick, console.tick_hz, state.vector))
-        events.append(source.take_events())
-    assert events == [0, Event.COLLISION, 0, 0, 0]
+        events.append(source.take_impact().first_touch)
+    assert events == [0.0, 1.0, 0.0, 0.0, 0.0]
     assert source.summary()["traffic"]["collisions"] == 1
 
 

@@ -1,12 +1,18 @@
 """A paced drive with the road in its window: drawn by real OpenGL, or, where there is none, without it."""
 
+import json
+import os
+import signal
 from pathlib import Path
 
 import pytest
 
+from simconsole.processes.supervisor import STATUS
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.verification import verify
-from tests.drives.console import results, simconsole
+from simconsole.session.worker_programs import LATENCY
+from tests.drives.console import Running, results, simconsole
+from tests.patience import PATIENCE_S, wait_until
 
 SESSION = """\
 schema: 1
@@ -15,7 +21,7 @@ environment: {world: WORLD}
 scenario: {vehicle: VEHICLE}
 outputs:
   bridge: null
-  hud: {width_px: 640, height_px: 480, rate_hz: 20, view: {}}
+  hud: {width_px: 320, height_px: 240, rate_hz: 10, view: {}}
   scene: null
   report: false
 devices: {driver: "none"}
@@ -42,6 +48,32 @@ def test_the_window_draws_while_the_drive_goes_on(tmp_path: Path, world: str, ve
     assert verify(bundle) == []
     assert "Traceback" not in said
     assert said.count("driver's view:") <= 1, "told once, and only where the processor draws"
+
+
+def test_a_killed_view_is_shown_again_while_the_drive_goes_on(tmp_path: Path) -> None:
+    session = tmp_path / "session.yaml"
+    session.write_text(SESSION.replace("WORLD", "urban").replace("VEHICLE", "hatchback"))
+    words = ("drive", session, "--for", 40, "--out", tmp_path / "bundle", "--no-pack", "--json")
+    with Running(tmp_path / "run", *words, SDL_VIDEODRIVER="offscreen") as drive:
+        core = drive.process.pid
+
+        def file(name: str) -> Path | None:
+            return next(Path("/dev/shm").glob(f"simconsole-{core}-*/{name}"), None)
+
+        wait_until(lambda: file(f"{LATENCY}.hud.json"), "a picture")
+        status, drawn = file(STATUS), file(f"{LATENCY}.hud.json")
+        assert status is not None
+        assert drawn is not None
+        process = json.loads(status.read_bytes())["hud"]["process_id"]
+        drawn.unlink()
+        os.kill(process, signal.SIGKILL)
+        wait_until(lambda: json.loads(status.read_bytes())["hud"]["restarts"] == 1, "another view")
+        wait_until(drawn.exists, "a picture of the other view")
+        drive.process.send_signal(signal.SIGINT)
+        assert drive.process.wait(PATIENCE_S) == 130
+    summary = open_bundle(tmp_path / "bundle").manifest.summary
+    assert summary["station_restarts"]["hud"] == 1
+    assert verify(tmp_path / "bundle") == []
 
 
 def test_without_opengl_the_drive_shows_its_instruments(tmp_path: Path) -> None:

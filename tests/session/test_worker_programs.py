@@ -57,9 +57,15 @@ def test_road_users_reach_a_worker_whole_and_in_order(tmp_path: Path) -> None:
     worker = RoadUsersRing(tmp_path)
     assert len(worker.newest().users) == 0
     assert worker.since() == []
+    before, newest = worker.newest_two()
+    assert before is None
+    assert len(newest.users) == 0
     for step in range(1, 4):
         ring.write(to_record(np.full((step, FIELDS), float(step))), stamp=10 * step)
     assert worker.newest().tick == 30
+    before, newest = worker.newest_two()
+    assert before is not None
+    assert (before.tick, newest.tick) == (20, 30)
     assert worker.newest().users.tolist() == [[3.0] * FIELDS] * 3
     assert [(at.tick, len(at.users)) for at in worker.since()] == [(10, 1), (20, 2), (30, 3)]
     assert worker.since() == []

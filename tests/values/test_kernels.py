@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from simconsole.values.host.jit import compiled
-from simconsole.values.kernels import approach, clip, forget, is_finite, is_kernel, put
+from simconsole.values.kernels import approach, clip, forget, is_finite, is_kernel, is_stage, kernel, put, stage
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
 bounded = st.floats(-1e6, 1e6)
@@ -57,3 +57,9 @@ def test_only_marked_functions_are_kernels() -> None:
     assert not is_kernel(forget)
     assert not is_kernel(math.sqrt)
     assert not is_kernel(3.0)
+
+
+def test_a_stage_is_a_kernel_too() -> None:
+    step, part = stage(lambda value: value), kernel(lambda value: value)
+    assert (is_kernel(step), is_stage(step)) == (True, True)
+    assert (is_kernel(part), is_stage(part)) == (True, False)

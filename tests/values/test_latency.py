@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from simconsole.processes.receipts import latencies_of
 from simconsole.processes.shared_memory import Record, Ring
 from simconsole.profiles.session import Devices, ModeSection, Scenario, SessionProfile
 from simconsole.session.lockstep import LockstepLink
-from simconsole.session.paced import RingOutput, worker_latencies
+from simconsole.session.paced import RingOutput
 from simconsole.session.pacing import UnpacedPacer
 from simconsole.session.resolution import resolve
 from simconsole.session.worker_programs import LATENCY, NewestOnce
@@ -182,7 +183,7 @@ def test_in_lockstep_the_answer_is_waited_for_at_the_exchange() -> None:
 
 def test_workers_that_said_nothing_have_no_statistics(tmp_path: Path) -> None:
     (tmp_path / f"{LATENCY}.bridge.json").write_text("{")
-    assert worker_latencies(tmp_path) == {}
+    assert latencies_of(tmp_path, "latency") == {}
 
 
 def test_the_ring_tells_a_worker_when_it_was_published(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

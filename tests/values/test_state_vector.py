@@ -28,7 +28,7 @@ def test_stages_follow_each_other_without_gap_and_inputs_come_first() -> None:
         at += part.width
     assert at == PLATFORM_AT
     inputs = {name.partition(".")[0] for name in columns(PlatformState)[:INPUT_WIDTH]}
-    assert inputs == {"sample", "ros", "events", "ecu", "ahead"}
+    assert inputs == {"sample", "ros", "events", "ecu", "ahead", "impact"}
     assert columns(PlatformState)[INPUT_WIDTH].startswith("driver.")
 
 

@@ -14,6 +14,8 @@ from tests.vehicle.shipped import SHIPPED, shipped
 
 AVERAGE_S = 0.05
 """Over which accelerations are averaged before their change counts as a jerk: 20 Hz, more than a body feels."""
+SLOWER_KMH = 0.5
+"""By which a car with traction control may be slower after 8 s than one whose wheels spin."""
 
 
 def uphill(drive: Drive, seconds: float, throttle: float) -> tuple[float, float]:
@@ -54,6 +56,27 @@ def test_on_the_flat_traction_control_is_at_least_as_fast_as_none(car: str, fric
         assert speeds[0] > 1.03 * speeds[1], "the peak of the force is worth more than sliding"
 
 
+def dumped(drive: Drive, seconds: float) -> tuple[float, float]:
+    """Let the clutch go at once at full throttle in first gear, by hand; return speed in km/h and whether it runs."""
+    drive.hold(1.0, brake=0.8, clutch=1.0, gear=1)
+    drive.hold(0.4, brake=0.8, clutch=1.0, gear=1, throttle=1.0)
+    seen = drive.hold(seconds, gear=1, throttle=1.0)
+    return seen.vx_mps * KMH_PER_MPS, seen.engine_running
+
+
+@pytest.mark.parametrize("car", ["hatchback", "light_van"])
+@pytest.mark.parametrize("friction", [0.3, 0.5, 1.0])
+@pytest.mark.parametrize("slope", [0.0, 0.15, 0.20, 0.25])
+def test_long_wheelspin_leaves_traction_control_no_slower_than_none(car: str, friction: float, slope: float) -> None:
+    """The clutch is dumped, so that the wheels spin at once: what is taken back must come back."""
+    ground = Ground(friction, slope, 0.0)
+    regulated, runs = dumped(shipped(car, ground, traction_control=True), 8.0)
+    spinning, _ = dumped(shipped(car, ground, traction_control=False), 8.0)
+    print(f"{regulated:.1f} km/h after 8 s; without traction control {spinning:.1f}")
+    assert regulated >= spinning - SLOWER_KMH
+    assert runs == 1.0
+
+
 def test_a_car_that_rolls_back_is_driven_up_again() -> None:
     """Its gear stays in: traction control counts the slip against the way that the car is to go."""
     drive = shipped("light_van", Ground(1.0, 0.20, 0.0), hill_hold=False)
@@ -64,21 +87,23 @@ def test_a_car_that_rolls_back_is_driven_up_again() -> None:
 
 @pytest.mark.parametrize("car", SHIPPED)
 def test_a_person_starts_by_hand_on_a_hill_of_25_percent(car: str) -> None:
-    """Hand brake, clutch to where it bites, then both let go: no car rolls back, none stalls."""
+    """Hand brake, clutch to where it bites, then both let go: no car rolls back, none stalls, then or later."""
     drive = shipped(car, Ground(1.0, 0.25, 0.0))
     drive.hold(1.0, brake=0.8, handbrake=1.0, clutch=1.0, gear=1)
     start = drive.hold(0.5, handbrake=1.0, clutch=1.0, gear=1, throttle=0.6).x_m
-    lowest = start
-    for tick in range(1500):
+    lowest, speeds = start, []
+    for tick in range(2000):
         clutch = max(0.50, 0.75 - 0.001 * tick) if tick < 1200 else max(0.0, 0.50 - 0.005 * (tick - 1200))
         hand = max(0.0, 1.0 - max(0.0, 0.01 * (tick - 200)))
         seen = drive.hold(TICK_S, clutch=clutch, throttle=0.9, gear=1, handbrake=hand)
         lowest = min(lowest, seen.x_m)
+        speeds.append(seen.vx_mps)
     print(f"rolled back {100.0 * (start - lowest):.1f} cm, then {seen.vx_mps * KMH_PER_MPS:.1f} km/h")
     assert lowest > start - 0.05
     assert seen.engine_running == 1.0
     assert seen.x_m > start + 3.0
-    assert seen.vx_mps > 1.0
+    assert seen.vx_mps > 2.0
+    assert speeds[-1] > speeds[-250], "it drives on after the clutch has closed"
 
 
 def shift(drive: Drive, throttle: float) -> NDArray[np.float64]:

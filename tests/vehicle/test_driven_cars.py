@@ -35,7 +35,7 @@ def test_figures_inside_are_plain_and_those_outside_are_red_and_said(script: Any
     rows = [line for line in page.splitlines() if line.startswith("| ") and "🔴" in line]
     assert len(rows) == len(script.FIGURES)
     assert "n/a" in next(row for row in rows if row.startswith("| Parking torque"))
-    assert "Out of range, hatchback: 0 to 100 km/h 13.3 s; Top speed 205 km/h" in page
+    assert "Out of range, hatchback: 0 to 100 km/h 13.3 s; Top speed 207 km/h" in page
 
 
 def test_a_manoeuvre_that_could_not_be_driven_is_red(script: Any) -> None:
@@ -51,3 +51,9 @@ def test_the_published_page_has_all_figures_and_none_of_hatchback_and_van_is_red
     labels = [row[0] for row in rows[1:]]
     assert labels == [figure.label for figure in script.FIGURES]
     assert [label for label, hatchback, van, _ in rows[1:] if "🔴" in hatchback + van] == []
+
+
+def test_every_number_of_a_source_stands_below_the_table_and_every_source_is_named_in_it(script: Any) -> None:
+    table, _, below = script.page(found(script, 0.5)).partition("- Out of range")
+    listed = {int(number) for number in re.findall(r"^(\d+)\. ", below, re.M)}
+    assert {int(number) for number in re.findall(r"\[(\d+)\]", table)} == listed

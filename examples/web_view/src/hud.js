@@ -22,7 +22,7 @@ export class Hud {
     const paused = told?.mode_words === "PAUSED"; // then nothing comes, and nothing is wrong
     const stale = told === null || (now - this.arrived > STALE_S && !paused);
     document.getElementById("hud").classList.toggle("stale", stale);
-    if (stale) return this.say({ speed: "–", gear: "–", mode: "NO DATA", reason: "", authority: "", alert: "", limit: "" });
+    if (stale) return this.say({ speed: "–", gear: "–", mode: "NO DATA", reason: "", authority: "", alert: "", limit: "", turn: "" });
     const count = TAKE_OVER.includes(told.alert) ? ` ${Math.ceil(told.takeover_remaining)}` : "";
     this.stamp = seconds(told.header.stamp);
     this.say({
@@ -32,6 +32,7 @@ export class Hud {
       reason: told.todo_words || told.reason_words,
       authority: steers(told),
       limit: told.speed_limit > 0 ? `limit ${Math.round(3.6 * told.speed_limit)}` : "",
+      turn: nextTurn(told),
       alert: told.alert_words + count,
     });
     document.getElementById("alert").classList.toggle("danger", told.alert >= DANGER);
@@ -51,6 +52,15 @@ export class Hud {
   lamp(name, on) {
     document.getElementById(name).classList.toggle("on", on);
   }
+}
+
+/** Where the route turns next; nothing without a route. */
+function nextTurn({ turn_distance: distance, turn_angle: angle, turn_exit: exit, turn_ends: ends }) {
+  if (distance < 0) return "";
+  const far = distance < 1000 ? `${10 * Math.round(distance / 10)} m` : `${(distance / 1000).toFixed(1)} km`;
+  if (ends) return `\u2691 ${far}`;
+  const arrow = Math.abs(angle) < 0.3 ? "\u2191" : angle > 0 ? "\u21b0" : "\u21b1";
+  return exit > 0 ? `exit ${exit} ${arrow} ${far}` : `${arrow} ${far}`;
 }
 
 /** Who steers, and with what share where it is not all. */

@@ -1,5 +1,6 @@
 import { Hud } from "./hud.js";
 import { Motion } from "./motion.js";
+import { Others } from "./others.js";
 import { subscribe } from "./rosbridge.js";
 import { Stage } from "./stage.js";
 
@@ -16,14 +17,20 @@ const stage = new Stage(document.getElementById("picture"), {
 });
 const motion = new Motion();
 const hud = new Hud();
+const others = new Others(stage.map);
 const state = { connection: "connecting", frames: 0, drawn: null };
 
 subscribe(
   `${scheme}://${host}${token}`,
   {
-    [`${prefix}/view/scene`]: (message) => stage.load(message),
-    [`${prefix}/view/poses`]: (message) => motion.take(message, clock()),
-    [`${prefix}/view/hud`]: (message) => hud.take(message, clock()),
+    [`${prefix}/view/scene`]: ["visualization_msgs/MarkerArray", (message) => stage.load(message)],
+    [`${prefix}/view/poses`]: ["tf2_msgs/TFMessage", (message) => motion.take(message, clock())],
+    [`${prefix}/view/hud`]: ["simconsole_msgs/Hud", (message) => hud.take(message, clock())],
+    [`${prefix}/road_users`]: ["simconsole_msgs/RoadUsers", (message) => others.takeUsers(message)],
+    [`${prefix}/traffic_signals`]: [
+      "simconsole_msgs/TrafficSignals",
+      (message) => others.takeSignals(message, stage.parts),
+    ],
   },
   (connection) => (state.connection = connection),
 );
@@ -45,6 +52,7 @@ globalThis.view = () => ({
   connection: state.connection,
   frames: state.frames,
   parts: stage.parts.map((part) => part.name),
+  others: others.boxes.size,
   hud: { ...hud.text, stamp: hud.stamp },
   time: state.drawn?.time,
   older: state.drawn?.older,

@@ -32,6 +32,7 @@ export class Stage {
     for (const [index, model] of models.entries()) {
       const frame = this.frame(markers[index].header.frame_id, "map");
       const [root] = model.scene.children; // its rotation makes y point up: here the frame `map` has that
+      Object.assign(frame.userData, root.userData);
       for (const part of [...root.children]) this.add(part, frame);
     }
     this.seat(this.frame("base_link", "map"));
@@ -62,7 +63,9 @@ export class Stage {
     for (const name of ["body", "front_left_wheel", "front_right_wheel", "rear_left_wheel", "rear_right_wheel"])
       this.show(name, !inside);
     for (const name of ["brake_lamps", "left_indicators", "right_indicators"]) this.show(name, false);
-    const place = inside ? vehicle.getObjectByName("driver_eye").position : new THREE.Vector3(-9, 0, 3.2);
+    const scale = Math.min(1, Math.max(0.1, (vehicle.userData.length_m ?? 4) / 4)); // nearer behind a small robot
+    const behind = new THREE.Vector3(-9, 0, 3.2).multiplyScalar(scale);
+    const place = inside ? vehicle.getObjectByName("driver_eye").position : behind;
     this.camera.position.copy(place);
     const [right, up, back] = [new THREE.Vector3(0, -1, 0), new THREE.Vector3(0, 0, 1), new THREE.Vector3(-1, 0, 0)];
     this.camera.quaternion.setFromRotationMatrix(new THREE.Matrix4().makeBasis(right, up, back));

@@ -157,9 +157,9 @@ class BridgeClient:
         self._connection.close()
         self._change("connecting")
 
-    def advertise(self, topic: str, type_name: str) -> None:
-        """Announce that this client publishes `topic`. Errors as `ClientProtocol.advertise`."""
-        self._register(self.protocol.advertise(topic, type_name))
+    def advertise(self, topic: str, type_name: str, latch: bool = False) -> None:
+        """Announce that this client publishes `topic`. Arguments and errors as `ClientProtocol.advertise`."""
+        self._register(self.protocol.advertise(topic, type_name, latch))
 
     def unadvertise(self, topic: str) -> None:
         """Withdraw a publisher."""

@@ -1,18 +1,20 @@
 """The console's side of the bridge: snapshots out, commands in, names as the profile wants them. No socket."""
 
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from simconsole.bridge.console.camera_topics import CameraTopics
 from simconsole.bridge.console.command_decoder import CommandDecoder
 from simconsole.bridge.console.counters import bridge_status, total_counts
 from simconsole.bridge.console.input_slots import BridgeInputs, OnCommand, OnEvents
 from simconsole.bridge.console.operator_acts import ACTS_MAX, OPERATE, OPERATE_TYPE, Act, OnAct, Operator
-from simconsole.bridge.console.output_schedule import OutputSchedule, topic_names
+from simconsole.bridge.console.output_schedule import OutputSchedule, ScheduledOutput, topic_names
+from simconsole.bridge.console.plan_input import OnPlan, PlanInput
 from simconsole.bridge.console.published_tick import PublishedTick
 from simconsole.bridge.console.road_user_topics import RoadUserTopics
 from simconsole.bridge.console.surroundings import NOWHERE, Surroundings
-from simconsole.bridge.console.topics import ROSOUT, ROSOUT_TYPE, Outputs
+from simconsole.bridge.console.topics import ODOMETRY, ROSOUT, ROSOUT_TYPE, Outputs
 from simconsole.bridge.console.view_topics import view_topics
+from simconsole.bridge.link.measurements import LateMeasurements
 from simconsole.bridge.messages import Registry, standard_registry
 from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.client_session import ClientSession
@@ -21,11 +23,20 @@ from simconsole.bridge.protocol.server_protocol import Outcome, Router
 from simconsole.bridge.protocol.topic_registry import Origin
 from simconsole.control.requests.refusals import broken_limit
 from simconsole.profiles.bridge import BridgeProfile
+from simconsole.profiles.link import WayProfile
 from simconsole.values.labels import arbitration_label, eased_label, is_eased
 from simconsole.values.signals import Event
 from simconsole.values.state_vector import LAYOUT, Snapshot
 
 _IMPLAUSIBLE_AT: Final = LAYOUT.ros_link.at("implausible")
+
+
+class _Measurement(NamedTuple):
+    """One message on its way to the controllers."""
+
+    output: ScheduledOutput
+    t_ns: int
+    message: Any  # None: nobody wants it
 
 
 class ConsoleBridge:
@@ -39,6 +50,7 @@ class ConsoleBridge:
         on_events: OnEvents | None = None,
         on_act: OnAct | None = None,
         around: Surroundings = NOWHERE,
+        on_plan: OnPlan | None = None,
     ) -> None:
         """Build the topics of `profile`.
 
@@ -49,6 +61,7 @@ class ConsoleBridge:
             on_events: sees each event at once.
             on_act: sees each act of an operator at once; without, they are kept until `take_acts`.
             around: what there is to tell of beside the state vector.
+            on_plan: sees what a controller plans (`PlanInput`).
 
         Raises:
             ProfileError: the profile renames or rates a topic that does not exist, or gives two topics one name.
@@ -78,15 +91,18 @@ class ConsoleBridge:
             around.robot,
         )
         outputs = (*view_topics(self.router.registry, profile, around.view), *self._out.topics())
-        commands = self._command_decoder.topics()
+        self._plans = PlanInput(profile, on_plan)
+        commands = (*self._command_decoder.topics(), self._plans.topic())
         if around.road_users is not None:
             outputs = (*RoadUserTopics(self.router.registry, around.road_users).topics(), *outputs)
         if profile.camera is not None and around.camera is not None:
             outputs = (*outputs, *CameraTopics(self.router.registry, profile.camera, around.camera).topics())
         self.names = topic_names(profile, [*(topic.name for topic in outputs), *(topic.name for topic in commands)])
         self._schedule = OutputSchedule(outputs, self.names, profile)
+        self._late = None if profile.link.measurements == WayProfile() else LateMeasurements[_Measurement](profile.link)
+        self._newest_ns = 0  # stamp of the newest odometry that has gone out late
         self._topics = {
-            output.name: self.router.add_output(output.name, output.type, latch=output.latched)
+            output.name: self.router.add_output(output.name, output.type, latch=output.latched, shared=output.shared)
             for output in self._schedule.outputs
         }
         self.router.add_shared(ROSOUT, ROSOUT_TYPE)
@@ -97,25 +113,44 @@ class ConsoleBridge:
         for command in commands:
             self.router.add_command(self.names[command.name], command.type, command.accept, command.leased)
 
-    def publish(self, snapshot: Snapshot, now_ns: int, *, odometry: bool = False) -> None:
-        """Queue every message of `snapshot` that is due and wanted; with `odometry`, that in any case."""
+    def publish(self, snapshot: Snapshot, now_ns: int, *, odometry: bool = False) -> int | None:
+        """Queue every message of `snapshot` that is due and wanted; with `odometry`, that in any case.
+
+        Returns:
+            The stamp in ns of the state that a controller answers now: that of `snapshot`, unless measurements come
+            late; None: its odometry is lost, under way, or older than one that went out before.
+        """
         self.keep_time(snapshot, now_ns)
         broken = self._broken_limit(snapshot)
         if broken:
             self.router.tell_commander("error", f"command not followed: {broken}", now_ns)
         tick = self._tell(snapshot, broken, now_ns)
         for output in self._schedule.due(snapshot, odometry=odometry):
-            topic = self._topics[output.name]
+            topic, message = self._topics[output.name], None
             if topic.subscribers or topic.latch:
                 tick = tick or self._out.published_tick(snapshot)
                 message = output.build(tick)
-                if message is not None:
-                    self.router.topic_registry.distribute(topic, message, now_ns)
+            if self._late is not None and output.measured:
+                told = _Measurement(output, snapshot.t_ns, message)
+                self._late.send(output.standard, snapshot.tick, snapshot.tick_hz, told)
+            elif message is not None:
+                self.router.topic_registry.distribute(topic, message, now_ns)
+        return snapshot.t_ns if self._late is None else self._tell_late(self._late, snapshot.tick, now_ns)
+
+    def _tell_late(self, late: LateMeasurements[_Measurement], tick: int, now_ns: int) -> int | None:
+        """Queue the measurements that arrive in this tick; return the newest odometry's stamp, None if none is new."""
+        before = self._newest_ns
+        for output, t_ns, message in late.arrived(tick):
+            if message is not None:
+                self.router.topic_registry.distribute(self._topics[output.name], message, now_ns)
+            if output.standard == ODOMETRY:
+                self._newest_ns = max(self._newest_ns, t_ns)
+        return self._newest_ns if self._newest_ns > before else None
 
     def keep_time(self, snapshot: Snapshot, now_ns: int) -> None:
         """Take what time it is from a finished tick, without publishing anything."""
         self.operator.tick = snapshot.tick
-        self.router.ros_time_ns = self._command_decoder.ros_time_ns = snapshot.t_ns
+        self.router.ros_time_ns = self._command_decoder.ros_time_ns = self._plans.now_ns = snapshot.t_ns
         self.router.calls.expire(now_ns)
         self._now_ns = now_ns
 

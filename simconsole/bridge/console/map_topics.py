@@ -67,7 +67,7 @@ class MapTopics:
         markers = OutputTopic(MARKERS, "visualization_msgs/MarkerArray", ONCE, self._markers)
         if self._shown.earth is None:
             return (markers,)
-        return markers, OutputTopic(GNSS, "sensor_msgs/NavSatFix", GNSS_HZ, self._position)
+        return markers, OutputTopic(GNSS, "sensor_msgs/NavSatFix", GNSS_HZ, self._position, measured=True)
 
     def _position(self, tick: PublishedTick) -> Any:
         assert self._shown.earth is not None

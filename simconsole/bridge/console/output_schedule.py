@@ -20,6 +20,8 @@ class ScheduledOutput:
         self.name = name
         self.type = output.type
         self.watched = output.watched
+        self.measured = output.measured
+        self.shared = output.shared
         self.latched = output.rate_hz == ONCE or output.watched is not None
         self.rate_hz = rate_hz
         self.build: Callable[[PublishedTick], Any] = output.build

@@ -28,6 +28,10 @@ class OutputTopic(NamedTuple):
     """Returns the message; None: nothing is to be told now."""
     watched: int | None = None
     """A column of the state vector: the topic is latched, and due with each change of it, too."""
+    measured: bool = False
+    """It tells what is measured of vehicle or road users: it goes over the session's link."""
+    shared: bool = False
+    """Clients publish on it, too."""
 
 
 RobotTable = Callable[[Registry, BridgeProfile], tuple[OutputTopic, ...]]

@@ -43,8 +43,8 @@ class RoadUserTopics:
     def topics(self) -> tuple[OutputTopic, ...]:
         """Return the rows of the table of output topics."""
         return (
-            OutputTopic(ROAD_USERS, "simconsole_msgs/RoadUsers", RATE_HZ, self._road_users),
-            OutputTopic(DETECTIONS, "vision_msgs/Detection3DArray", RATE_HZ, self._detections),
+            OutputTopic(ROAD_USERS, "simconsole_msgs/RoadUsers", RATE_HZ, self._road_users, measured=True),
+            OutputTopic(DETECTIONS, "vision_msgs/Detection3DArray", RATE_HZ, self._detections, measured=True),
         )
 
     def _road_users(self, tick: PublishedTick) -> Any:
@@ -57,6 +57,7 @@ class RoadUserTopics:
                 pose=self._pose(user, 0.0),
                 twist=types["Twist"](vector(user.speed_mps, 0.0, 0.0), vector()),
                 size=vector(user.length_m, user.width_m, user.height_m),
+                turn_indicators=int(user.turn_indicators),
             )
             for user in measured(tick, at)
         ]
@@ -84,7 +85,7 @@ class RoadUserTopics:
 
     def _pose(self, user: RoadUser, height_m: float) -> Any:
         types = self._types
-        place = types["Point"](user.x_m, user.y_m, height_m)
+        place = types["Point"](user.x_m, user.y_m, user.z_m + height_m)
         return types["Pose"](place, types["Quaternion"](*quaternion(0.0, 0.0, user.yaw_rad)))
 
 

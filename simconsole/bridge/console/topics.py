@@ -22,6 +22,7 @@ from simconsole.bridge.console.signal_topics import SignalTopics
 from simconsole.bridge.link.localisation import Localisation, covariances
 from simconsole.bridge.messages import Registry
 from simconsole.profiles.bridge import BridgeProfile
+from simconsole.profiles.link import WayProfile
 from simconsole.values.labels import commander_label, link_label, mode_label, notice_label, reason_label
 from simconsole.values.signals import NEVER_TICKS, Link, Mode, RemoteCommand, VehicleState
 from simconsole.values.state_vector import LAYOUT, Snapshot
@@ -32,6 +33,7 @@ CLOCK: Final = "/clock"
 TF: Final = "/tf"
 TF_STATIC: Final = "/tf_static"
 ODOMETRY: Final = "/odom"
+ODOMETRY_HZ: Final = 50.0
 GROUND_TRUTH: Final = "/ground_truth/odom"
 IMU: Final = "/imu/data"
 JOY: Final = "/console/joy"
@@ -122,7 +124,8 @@ class Outputs:
         self._camera = profile.camera
         self._localisation = Localisation(profile.link)
         self._pose_covariance, self._twist_covariance = covariances(profile.link.localisation)
-        self._shows_truth = self._localisation.is_perfect or profile.link.ground_truth
+        at_once = profile.link.measurements == WayProfile()
+        self._shows_truth = (self._localisation.is_perfect and at_once) or profile.link.ground_truth
         names = _TYPES.split()
         self._types: dict[str, Any] = {name.partition("/")[2]: registry.struct(name) for name in names}
 
@@ -145,10 +148,10 @@ class Outputs:
             OutputTopic(ROUTE, "nav_msgs/Path", ONCE, self._route),
             *self._map.topics(),
             *self._signals.topics(),
-            OutputTopic(TF, "tf2_msgs/TFMessage", 50.0, self._tf),
+            OutputTopic(TF, "tf2_msgs/TFMessage", 50.0, self._tf, measured=True),
             joy,
-            OutputTopic(VELOCITY, "autoware_vehicle_msgs/VelocityReport", 30.0, self._velocity),
-            OutputTopic(STEERING, "autoware_vehicle_msgs/SteeringReport", 30.0, self._steering),
+            OutputTopic(VELOCITY, "autoware_vehicle_msgs/VelocityReport", 30.0, self._velocity, measured=True),
+            OutputTopic(STEERING, "autoware_vehicle_msgs/SteeringReport", 30.0, self._steering, measured=True),
             OutputTopic(GEAR_STATUS, "autoware_vehicle_msgs/GearReport", 30.0, self._gear),
             OutputTopic(
                 TURN_INDICATORS_STATUS, "autoware_vehicle_msgs/TurnIndicatorsReport", 30.0, self._turn_indicators
@@ -156,15 +159,16 @@ class Outputs:
             OutputTopic(HAZARD_LIGHTS_STATUS, "autoware_vehicle_msgs/HazardLightsReport", 30.0, self._hazard_lights),
             OutputTopic(CONTROL_MODE, "autoware_vehicle_msgs/ControlModeReport", 30.0, self._control_mode),
             *self._authority_topics(),
-            OutputTopic(IMU, "sensor_msgs/Imu", 100.0, self._imu),
+            OutputTopic(IMU, "sensor_msgs/Imu", 100.0, self._imu, measured=True),
             *truths,
             OutputTopic(
                 ODOMETRY,
                 "nav_msgs/Odometry",
-                50.0,
+                ODOMETRY_HZ,
                 lambda tick: self._odometry(
                     tick, tick.measured, self._odometry_frame, self._pose_covariance, self._twist_covariance
                 ),
+                measured=True,
             ),
         )
 

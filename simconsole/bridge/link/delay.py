@@ -1,9 +1,16 @@
 """Commands that act late, late by different times, or never: between what a controller sent and the command slot."""
 
+from collections.abc import Callable
+from typing import Final
+
+from simconsole.bridge.link.ways import Draws, ticks_on_the_way
 from simconsole.profiles.link import LinkProfile
-from simconsole.values.draws import Channel, even
+from simconsole.values.draws import Channel
+from simconsole.values.kernels import Row
 from simconsole.values.protocols import CommandSource
 from simconsole.values.signals import NO_COMMAND, EventInput, RemoteCommand
+
+_AGE_AT: Final = RemoteCommand._fields.index("age_ticks")
 
 
 class LateCommands:
@@ -16,39 +23,50 @@ class LateCommands:
     def __init__(self, source: CommandSource, link: LinkProfile, tick_hz: int) -> None:
         self._source = source
         self._link = link
+        self._draws = Draws(link.seed, Channel.JITTER, Channel.LOSS)
         self._tick_hz = tick_hz
         self._seen = 0.0
         self._under_way: list[tuple[int, RemoteCommand]] = []  # (tick of arrival, command), in the order of sending
-        self._arrived = NO_COMMAND
-        self._arrival = 0
+        self._arrived = (0, NO_COMMAND)
+        self._foresee: Callable[[int, Row], int] | None = getattr(source, "foresee", None)
 
     def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
         """Return the newest command that has arrived, aged since then, and all edges since the last call."""
         newest, events = self._source.take(tick)
         return self._heard(newest, tick), events
 
+    def foresee(self, tick: int, commands: Row) -> int:
+        """Write what `take` will return for `tick` and the ticks after it, as far as the source foresees its own."""
+        count = 0 if self._foresee is None else self._foresee(tick, commands)
+        if count < 1:
+            return 0
+        sent = commands[:count].copy()
+        changed = sent != sent[0]
+        changed[:, _AGE_AT] = False
+        if changed.any():
+            count = int(changed.any(axis=1).argmax())
+        newest = RemoteCommand(*sent[0].tolist())
+        commands[0] = self._heard(newest, tick)
+        for at in range(1, count):
+            commands[at] = self._now(newest, tick + at)
+        return count
+
     def _heard(self, newest: RemoteCommand, tick: int) -> RemoteCommand:
-        """Return what has arrived, where `newest` is the newest command that was sent."""
+        """Take what was sent and what has arrived, where `newest` is the newest command that was sent; return it."""
         if newest.sequence != self._seen:
             self._seen = newest.sequence
-            if not self._is_lost(newest):
-                self._under_way.append((self._arrival_of(newest, tick), newest))
-        here = [entry for entry in self._under_way if entry[0] <= tick]
-        if here:
-            arrival, command = here[-1]  # what was sent before it and comes later is out of order
-            self._under_way = [entry for entry in self._under_way if entry[1].sequence > command.sequence]
-            self._arrived, self._arrival = command, arrival
+            late = ticks_on_the_way(self._link, self._draws, int(newest.sequence), self._tick_hz)
+            if late is not None:
+                self._under_way.append((max(tick, tick - 1 + late), newest))
+        self._arrived = self._arrived_by(tick)
+        arrived = self._arrived[1].sequence  # what was sent before it and comes later is out of order
+        self._under_way = [entry for entry in self._under_way if entry[1].sequence > arrived]
         return self._now(newest, tick)
 
-    def _is_lost(self, command: RemoteCommand) -> bool:
-        share = self._link.loss_share
-        return share > 0.0 and even(self._link.seed, Channel.LOSS, int(command.sequence)) < share
-
-    def _arrival_of(self, command: RemoteCommand, tick: int) -> int:
-        late_ms = self._link.delay_ms
-        if self._link.jitter_ms:
-            late_ms += self._link.jitter_ms * even(self._link.seed, Channel.JITTER, int(command.sequence))
-        return max(tick, tick - 1 + round(late_ms * self._tick_hz / 1000.0))
+    def _arrived_by(self, tick: int) -> tuple[int, RemoteCommand]:
+        """Return the newest command that arrives by `tick`, and when it does."""
+        here = [entry for entry in self._under_way if entry[0] <= tick]
+        return here[-1] if here else self._arrived
 
     def _now(self, newest: RemoteCommand, tick: int) -> RemoteCommand:
         """Return the arrived command as of `tick`, with what does not travel with a command: refusals and lights."""
@@ -57,10 +75,10 @@ class LateCommands:
             "turn_indicators": newest.turn_indicators,
             "hazard_lights": newest.hazard_lights,
         }
-        if not self._arrived.sequence:
+        arrival, command = self._arrived_by(tick)
+        if not command.sequence:
             return NO_COMMAND._replace(**settings)
-        age = self._arrived.age_ticks + (tick - self._arrival)
-        return self._arrived._replace(age_ticks=age, **settings)
+        return command._replace(age_ticks=command.age_ticks + (tick - arrival), **settings)
 
 
 def over_link(source: CommandSource, link: LinkProfile, tick_hz: int) -> CommandSource:

@@ -124,8 +124,8 @@ class ClientProtocol:
         self._numbers = 0
         self._assembler = FragmentAssembler(MAX_WHOLE, MAX_PIECES)
 
-    def advertise(self, topic: str, type_name: str) -> bytes:
-        """Return the text that announces a publisher.
+    def advertise(self, topic: str, type_name: str, latch: bool = False) -> bytes:
+        """Return the text that announces a publisher; with `latch` who comes later gets the newest message.
 
         Raises:
             BridgeError: the type is not known.
@@ -136,7 +136,8 @@ class ClientProtocol:
         if known != full:
             raise LocalProtocolError(f"{topic}: advertised as {known}, cannot be {full} too")
         self._advertised[topic] = full
-        return self._register("advertise", topic=topic, type=two_parts(full))
+        more = {"latch": True} if latch else {}
+        return self._register("advertise", topic=topic, type=two_parts(full), **more)
 
     def unadvertise(self, topic: str) -> bytes:
         """Return the text that withdraws a publisher."""

@@ -131,9 +131,13 @@ class Router:
         """Return a topic, None if there is none of that name."""
         return self.topic_registry.find(name)
 
-    def add_output(self, name: str, type_name: str, depth: int = 1, latch: bool = False) -> Topic:
-        """Add and return a topic that only the console publishes, keeping `depth` messages for a slow client."""
-        topic = Topic(name, self.registry.resolve(type_name), depth, owned=True, latch=latch)
+    def add_output(self, name: str, type_name: str, *, latch: bool = False, shared: bool = False) -> Topic:
+        """Add and return a topic of the console, of which a slow client gets the newest message.
+
+        One that is `shared` clients publish on, too: it is kept like a topic between clients.
+        """
+        depth = RELAY_DEPTH if shared else 1
+        topic = Topic(name, self.registry.resolve(type_name), depth, owned=True, shared=shared, latch=latch)
         self.topic_registry.add(topic)
         return topic
 
@@ -330,7 +334,7 @@ class Router:
             return self._command(
                 session, topic, command, lambda: (plain, self._read_command(topic, plain, decoded, text)), now_ns
             )
-        if topic.owned:
+        if topic.is_private:
             raise RemoteProtocolError("only the console publishes this topic")
         message = self.registry.from_plain(topic.type, operation.msg, now_ns=self.ros_time_ns)
         self._stamp(topic.type, operation.msg, message)

@@ -45,15 +45,29 @@ class Topic:
         depth: int,
         *,
         owned: bool = False,
+        shared: bool = False,
         command: Command | None = None,
         latch: bool = False,
         stays: bool = False,
     ) -> None:
-        """Create a topic; `owned` topics belong to the console and stay, others only if told so."""
+        """Create a topic.
+
+        Args:
+            name: on the server.
+            type_name: of its messages.
+            depth: messages kept for a slow subscriber that gave no queue length.
+            owned: it belongs to the console and stays.
+            shared: it is the console's, and clients publish on it, too.
+            command: what clients command by it.
+            latch: who comes later gets the newest message.
+            stays: it stays without publishers and subscribers.
+        """
         self.name = name
         self.type = type_name
         self.depth = depth
         self.owned = owned
+        self.is_private = owned and not shared and command is None
+        """Whether only the console may publish on it."""
         self.stays = owned or stays
         self.command = command
         self.latch = latch
@@ -173,7 +187,7 @@ class TopicRegistry:
     def advertise(self, session: ClientSession, name: str, operation: Advertise) -> Topic:
         """Register a client as a publisher; return the topic. Raises RemoteProtocolError with the reason why not."""
         topic = self._topic(name, operation.type)
-        if topic.owned and topic.command is None:
+        if topic.is_private:
             raise RemoteProtocolError("only the console publishes this topic")
         identifiers = session.advertised.get(name, set())
         if operation.id not in identifiers and len(identifiers) >= self._limits.topics:

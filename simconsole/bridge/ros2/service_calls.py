@@ -29,18 +29,29 @@ ASK_POLLS_MOST: Final = 600
 class _Pursued:
     """An accepted goal.
 
-    Its result is asked for again and again. A server that takes the place of the one that accepted it has never heard
-    the first question: it answers that it does not know the goal, which is its end.
+    Its result is asked for again and again: a question may be lost, and a server that has taken the place of the one
+    that accepted the goal answers that it does not know it, which is its end.
+
+    Where an action has two servers both may know the goal, but one whose acceptance was not delivered never pursues it
+    and never answers. ROS does not say which of them has accepted. So the goal ends when one leaves that was there.
     """
 
-    def __init__(self, handle: Any, ended: Callable[[Any], None]) -> None:
+    def __init__(self, handle: Any, ended: Callable[[Any], None], servers: frozenset[bytes]) -> None:
         self.handle = handle
+        self.orphan_polls = 0
+        """For how long one of its servers has been gone."""
         self._ended = ended
+        self._servers = servers
+        self._age_polls = 0
         self._wait_polls = ASK_POLLS
         self._left_polls = ASK_POLLS
 
-    def poll(self) -> None:
-        """Count; ask when it is time."""
+    def poll(self, servers: frozenset[bytes]) -> None:
+        """Count; ask when it is time; `servers` are those that the action has now."""
+        self._age_polls += 1
+        if self._age_polls <= READY_POLLS:
+            self._servers |= servers  # heard of late
+        self.orphan_polls = self.orphan_polls + 1 if self._servers - servers else 0
         self._left_polls -= 1
         if self._left_polls <= 0:
             self._wait_polls = self._left_polls = min(2 * self._wait_polls, ASK_POLLS_MOST)
@@ -157,10 +168,23 @@ class GraphCalls:
         for late in [late for late, end in called.unanswered.items() if self._polls > end]:
             self._take(called, late)
             self._fail(called.is_call, called.name, late, "no answer within the time limit")
-        for pursued in list(called.goals.values()):
-            pursued.poll()
+        self._pursue(called)
         self._advance(called)
         called.idle_polls = 0 if called.keys else called.idle_polls + 1
+
+    def _pursue(self, called: _Called) -> None:
+        servers = self._servers(called) if called.goals else frozenset()
+        for key, pursued in list(called.goals.items()):
+            pursued.poll(servers)
+            if pursued.orphan_polls > READY_POLLS:
+                del called.goals[key]
+                pursued.handle.cancel_goal_async()  # another server may be at it
+                self._fail(False, called.name, key, "a server that may have accepted it has left the graph")
+
+    def _servers(self, called: _Called) -> frozenset[bytes]:
+        """Return the servers of an action: each publishes the status of its goals."""
+        found = self._node.get_publishers_info_by_topic(f"{called.name}/_action/status")
+        return frozenset(bytes(each.endpoint_gid) for each in found)
 
     def _find(self, name: str, type_name: str, is_call: bool) -> _Called:
         from rclpy.action import ActionClient
@@ -236,7 +260,7 @@ class GraphCalls:
             if not handle.accepted:
                 self._fail(False, name, key, "the goal was not accepted")
             else:
-                called.goals[key] = _Pursued(handle, ended)
+                called.goals[key] = _Pursued(handle, ended, servers)
                 called.goals[key].ask()
                 if key in called.unwanted:
                     handle.cancel_goal_async()
@@ -245,11 +269,13 @@ class GraphCalls:
 
         def ended(future: Any) -> None:
             """Put the result of the goal, or why there is none, into the bridge's inbox."""
-            if called.goals.pop(key, None) is None:
+            pursued = called.goals.pop(key, None)
+            if pursued is None:
                 return
             try:
                 found = future.result()
                 if not found.status:
+                    pursued.handle.cancel_goal_async()  # another server may be at it
                     self._fail(False, name, key, "the server that is there now does not know the goal")
                     return
                 self._put("goal_ended", key, name, serialize_message(found.result), found.status, "")
@@ -261,6 +287,7 @@ class GraphCalls:
             if key in called.goals or key in called.unanswered:
                 self._put("feedback_received", key, name, serialize_message(message.feedback))
 
+        servers = self._servers(called)
         goal = deserialize_message(operation.data, called.types.Goal)
         called.client.send_goal_async(goal, feedback_callback=progressed).add_done_callback(accepted)
 

@@ -165,7 +165,8 @@ class LockstepBridge:
         """Send a snapshot, odometry in any case, and wait for the command that answers it.
 
         That is the first accepted command whose stamp equals the odometry's; a command of a type without a stamp
-        answers by arriving. Whatever arrives before it is applied too.
+        answers by arriving. Whatever arrives before it is applied too. Over a link with errors the odometry may be an
+        earlier one; one that is lost is not waited for.
 
         Returns:
             False when no answer came within `timeout_s` of wall time or until `stop`, or the commander is gone and no
@@ -175,13 +176,16 @@ class LockstepBridge:
         self._now_ns = snapshot.t_ns
         inputs.tick = snapshot.tick
         self._record()
-        self.console.publish(snapshot, self._now_ns, odometry=True)
+        asked_ns = self.console.publish(snapshot, self._now_ns, odometry=True)
         self._pump_ros2()
         self._flush()
+        if asked_ns is None:
+            self._serve(0.0)
+            return True
         before = inputs.command.sequence
         deadline = time.monotonic() + timeout_s
         while True:
-            if inputs.command.sequence != before and inputs.stamp_ns in (snapshot.t_ns, None):
+            if inputs.command.sequence != before and inputs.stamp_ns in (asked_ns, None):
                 return True
             left_s = deadline - time.monotonic()
             if left_s <= 0.0 or stop() or inputs.command.sequence == self._lost_at or not self.clients:

@@ -15,6 +15,7 @@ from simconsole.bridge.console.counters import link_state
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.console.input_slots import OnCommand, OnEvents
 from simconsole.bridge.console.operator_acts import OnAct
+from simconsole.bridge.console.plan_input import OnPlan
 from simconsole.bridge.console.surroundings import NOWHERE, Surroundings
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.protocol.access import Role
@@ -58,6 +59,7 @@ class BridgeServer:
         folder: Path | None = None,
         drive: str | None = None,
         around: Surroundings = NOWHERE,
+        on_plan: OnPlan | None = None,
     ) -> None:
         """Build the bridge; `start` opens it.
 
@@ -72,6 +74,7 @@ class BridgeServer:
             on_events=on_events,
             on_act=on_act,
             around=around,
+            on_plan=on_plan,
         )
         self._folder = folder
         self._drive = drive
@@ -241,6 +244,7 @@ def serve(
     folder: Path | None = None,
     drive: str | None = None,
     around: Surroundings = NOWHERE,
+    on_plan: OnPlan | None = None,
 ) -> None:
     """Run a bridge server until `stop()` says so; for a process of its own.
 
@@ -258,6 +262,7 @@ def serve(
         folder: where topics are recorded if the profile says so.
         drive: the nonce of the drive whose bridge it is.
         around: what there is to tell of beside the state vector.
+        on_plan: gets each plan of a controller, at once.
 
     Raises:
         BridgeError: the address cannot be listened on.
@@ -272,6 +277,7 @@ def serve(
         folder=folder,
         drive=drive,
         around=around,
+        on_plan=on_plan,
     )
     reporter = _StatusReporter(server, on_counts, on_link_state)
     asyncio.run(_run(server, read_snapshot, stop, on_ready, reporter))

@@ -1,5 +1,6 @@
 """What the servers share of sockets: listening, addresses, TLS options, time limits, TCP state."""
 
+import os
 import socket
 import ssl
 import struct
@@ -36,16 +37,37 @@ def is_unacknowledged(sock: socket.socket, patience_ms: int = 1000) -> bool:
     return bool(count) and since_ms >= patience_ms
 
 
+def bind(host: str, port: int) -> socket.socket:
+    """Return a socket that has an address and does not listen yet: nobody can connect; port 0 lets the system choose.
+
+    Raises:
+        BridgeError: the address cannot be had.
+    """
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    sock = socket.socket(family)
+    try:
+        if os.name == "posix":  # as `socket.create_server`: elsewhere it would let two programs have one port
+            sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        if family == socket.AF_INET6:
+            sock.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 1)
+        sock.bind((host, port))
+    except OSError as error:
+        sock.close()
+        raise BridgeError(f"outputs.bridge: cannot listen on {host} port {port}: {error}") from None
+    return sock
+
+
 def listen(host: str, port: int) -> socket.socket:
     """Return a non-blocking listening socket; port 0 lets the system choose.
 
     Raises:
         BridgeError: the address cannot be listened on.
     """
-    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    listener = bind(host, port)
     try:
-        listener = socket.create_server((host, port), family=family, backlog=_BACKLOG)
+        listener.listen(_BACKLOG)
     except OSError as error:
+        listener.close()
         raise BridgeError(f"outputs.bridge: cannot listen on {host} port {port}: {error}") from None
     listener.setblocking(False)
     return listener

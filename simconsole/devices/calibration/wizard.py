@@ -45,6 +45,9 @@ QUIT: Final = "q"
 TRIES: Final = 5
 PEDALS: Final = ("throttle", "brake", "clutch", "handbrake")
 NEEDED: Final = ("throttle", "brake")
+UNLEARNT: Final = ("boot_modes", "force_feedback", "limits", "roles.0.button_labels")
+TUNED: Final = (".curve", ".dead_zone", ".rate_filter_s", ".assistance", ".top_gear", ".neutral_dwell_s")
+"""Keys, by how they begin and end, whose values a profile that knows the wheel gives."""
 _GEARS: Final = 7
 
 
@@ -119,19 +122,17 @@ class Wizard:
         if handbrake_key not in (None, pedals_key):
             keys["handbrake"] = handbrake_key
         known = [(role.vendor_id, role.product_id) for role in self._base.roles if role.role == "wheel"]
-        force = self._base.force_feedback if known == [wheel_key[:2]] else None
-        return CockpitProfile(
+        profile = CockpitProfile(
             schema=1,
             title=f"{self._entries[wheel_key].name}, calibrated",
             roles=[self._role(role, key) for role, key in keys.items()],
-            boot_modes=self._base.boot_modes if known == [wheel_key[:2]] else [],
             wheel=wheel,
             pedals=pedals,
             shifter=shifter,
             buttons=buttons,
-            force_feedback=force,
-            provenance=self._provenance(origin, force is not None),
+            provenance=_provenance(origin),
         )
+        return _with_unlearnt(profile, self._base) if known == [wheel_key[:2]] else profile
 
     def _learn_wheel(self) -> tuple[DeviceKey, WheelAxis]:
         def learn() -> tuple[DeviceKey, WheelAxis]:
@@ -329,14 +330,41 @@ class Wizard:
             button_labels=next((known.button_labels for known in same if known.role == role), []),
         )
 
-    def _provenance(self, origin: str, force: bool) -> dict[str, Provenance]:
-        captured = Provenance(status="captured", source=origin)
-        found = dict.fromkeys(("roles", "wheel", "pedals", "shifter", "buttons"), captured)
-        found["wheel.lock_to_lock_deg"] = Provenance(status="documented", source=f"the person's word, {origin}")
-        if force:
-            kept = ("boot_modes", "force_feedback", "roles.0.button_labels")
-            found |= {key: of for key, of in self._base.provenance.items() if key.startswith(kept)}
-        return found
+
+def _provenance(origin: str) -> dict[str, Provenance]:
+    captured = Provenance(status="captured", source=origin)
+    found = dict.fromkeys(("roles", "wheel", "pedals", "shifter", "buttons"), captured)
+    found["wheel.lock_to_lock_deg"] = Provenance(status="documented", source=f"the person's word, {origin}")
+    return found
+
+
+def _with_unlearnt(learnt: CockpitProfile, known: CockpitProfile) -> CockpitProfile:
+    """Return a profile with what no step learns as the profile that knows its wheel has it."""
+    replace = msgspec.structs.replace
+    pedals = {}
+    for name in PEDALS:
+        pedal, before = getattr(learnt.pedals, name), getattr(known.pedals, name)
+        if pedal is not None and before is not None:
+            dead_zone = max(pedal.dead_zone, before.dead_zone)
+            pedals[name] = replace(pedal, curve=before.curve, dead_zone=dead_zone)
+    kept = {key: of for key, of in known.provenance.items() if key.startswith(UNLEARNT) or key.endswith(TUNED)}
+    wheel = learnt.wheel
+    return replace(
+        learnt,
+        boot_modes=known.boot_modes,
+        wheel=replace(
+            known.wheel,
+            axis=wheel.axis,
+            lock_to_lock_deg=wheel.lock_to_lock_deg,
+            grows_to=wheel.grows_to,
+            centre_raw=wheel.centre_raw,
+        ),
+        pedals=replace(learnt.pedals, **pedals),
+        shifter=replace(learnt.shifter, top_gear=known.shifter.top_gear, neutral_dwell_s=known.shifter.neutral_dwell_s),
+        limits=known.limits,
+        force_feedback=known.force_feedback,
+        provenance={**learnt.provenance, **kept},
+    )
 
 
 def _refuse_one_side(throttle: PedalAxis, brake: PedalAxis) -> None:

@@ -9,9 +9,10 @@ from typing import Any, Final, NamedTuple
 import msgspec
 
 from simconsole.devices.calibration.cockpit_settings import GEARS
+from simconsole.devices.calibration.wizard import QUIT, SKIP
 from simconsole.devices.setup.calibration_dialogue import calibrate_devices
 from simconsole.devices.setup.cockpit_trials import Trials, Verdict
-from simconsole.devices.setup.device_commands import Pace, Say, list_devices, realtime
+from simconsole.devices.setup.device_commands import Pace, Say, answer, list_devices, realtime
 from simconsole.devices.setup.force_feedback_check import check_force_feedback
 from simconsole.devices.setup.identify_dialogue import Weight, identify_motor
 from simconsole.profiles.device import Buttons, CockpitProfile
@@ -41,8 +42,9 @@ class Terminal(NamedTuple):
 class _Report:
     """The steps so far."""
 
-    def __init__(self, say: Say, virtual: bool, host: dict[str, str]) -> None:
+    def __init__(self, say: Say, terminal: Terminal, virtual: bool, host: dict[str, str]) -> None:
         self._say = say
+        self._terminal = terminal
         self.steps: list[dict[str, Any]] = []
         self._head = {
             "schema": 1,
@@ -53,15 +55,30 @@ class _Report:
         }
 
     def step(self, name: str, do: Callable[[], Verdict]) -> bool:
-        """Do one step and keep its verdict; a device that fails is one, too."""
-        self._say(f"--- {name}")
-        try:
-            verdict = do()
-        except DeviceError as error:
-            verdict = Verdict(False, str(error), {})
-        self._say(f"{name}: {verdict.how}: {'good' if verdict.ok else 'WRONG'}")
-        self.steps.append({"name": name, **verdict._asdict()})
+        """Do one step, again if the person wants to, and keep its verdict; a device that fails is one, too."""
+        tries = 0
+        while tries == 0 or self._again(name):
+            tries += 1
+            self._say(f"--- {name}")
+            try:
+                verdict = do()
+            except DeviceError as error:
+                verdict = Verdict(False, str(error), {})
+            self._say(f"{name}: {verdict.how}: {'good' if verdict.ok else 'WRONG'}")
+            if verdict.ok:
+                break
+        self.steps.append({"name": name, "tries": tries, **verdict._asdict()})
         return verdict.ok
+
+    def _again(self, name: str) -> bool:
+        """Ask whether a step that went wrong is done once more; nobody is asked who cannot answer."""
+        if self._terminal.typed is None:
+            return False
+        question = f"{name}: Enter tries it once more, {SKIP} leaves it so, {QUIT} gives up for now: "
+        typed = answer(self._terminal.ask, question).strip().lower()
+        if typed == QUIT:
+            raise KeyboardInterrupt
+        return typed != SKIP
 
     def write(self, path: Path, profile: CockpitProfile | None) -> dict[str, Any]:
         """Write what there is.
@@ -96,7 +113,8 @@ def accept_cockpit(
 
     Args:
         base: The profile to begin with.
-        folder: Gets the profile and the report; it must not be there yet.
+        folder: Gets the profile and the report; where it is that of an acceptance that was given up, what was
+            calibrated there is not asked again.
         terminal: How the person answers; not asked where `virtual`.
         say: Prints a line.
         stops: Judges the emergency stop.
@@ -110,22 +128,24 @@ def accept_cockpit(
         The report.
 
     Raises:
-        DeviceError: the folder is there, or a file cannot be written.
+        DeviceError: the folder holds a profile already, or a file cannot be written.
         KeyboardInterrupt: the person gave up; the report holds the steps until then.
     """
+    if (folder / ACCEPTED).exists():
+        raise DeviceError(f"{folder / ACCEPTED}: file: value exists: a folder without one")
     try:
-        folder.mkdir(parents=True)
+        folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise DeviceError(f"{folder}: folder: {error.strerror}: one that is not there yet") from error
+        raise DeviceError(f"{folder}: folder: {error.strerror}: one that can be made") from error
     if virtual:
         terminal = Terminal(_obliging(base), lambda: False, None)
-    report = _Report(say, virtual, host)
+    report = _Report(say, terminal, virtual, host)
     accepted: list[CockpitProfile] = []
     try:
         _steps(report, base, folder, terminal, accepted, say, stops, known, weight, virtual, pace)
     finally:
         results = report.write(folder / REPORT, accepted[-1] if accepted else None)
-    say(f"{folder / REPORT}: written; with {ACCEPTED} it can be sent in as it is")
+    say(f"{folder / REPORT}: written; " + (f"with {ACCEPTED} it can be sent in as it is" if accepted else "no profile"))
     return results
 
 
@@ -135,14 +155,15 @@ def _obliging(cockpit: CockpitProfile) -> Callable[[str], str]:
     lacks = [f"for {name.replace('_', ' ').upper()}" for name in buttons]
     lacks += [f"the {name.upper()}" for name in ("clutch", "handbrake") if getattr(cockpit.pedals, name) is None]
     lacks += [f"GEAR {gear}" for gear in range(len(cockpit.shifter.gears) + 1, GEARS + 1)]
+    lacks += ["H pattern"] if cockpit.shifter.pattern == "sequential" else []
     asked: dict[str, int] = {}
 
     def ask(question: str) -> str:
         asked[question] = asked.get(question, 0) + 1
-        if any(word in question for word in lacks):
-            return "s"
         if asked[question] > MOST_TRIES:
-            return "q"
+            return QUIT
+        if any(word in question for word in lacks):
+            return SKIP
         return "y" if "[y/n]" in question else ""
 
     return ask
@@ -165,11 +186,14 @@ def _steps(
     calibrated = folder / CALIBRATED
 
     def calibrate() -> Verdict:
+        if calibrated.exists():
+            say(f"{calibrated}: goes on with it; delete it to begin anew")
+            return Verdict(True, "learnt before", {})
         plugged = base if virtual else None
         results = calibrate_devices(
             base, calibrated, say=say, ask=terminal.ask, virtual=plugged, pace=pace, known=known, typed=terminal.typed
         )
-        return Verdict(True, "learnt step by step", results)
+        return Verdict(True, "learnt step by step", {"title": results["title"], "roles": results["roles"]})
 
     if not report.step("calibrate", calibrate):
         return
@@ -211,6 +235,7 @@ def _identified(
     virtual: bool,
     pace: Callable[[int], Pace],
 ) -> Verdict:
+    path.unlink(missing_ok=True)  # of a try that was not good
     results = identify_motor(
         cockpit,
         path,
@@ -222,7 +247,8 @@ def _identified(
         pace=pace,
     )
     refusal = results["refusal"]
-    return Verdict(not refusal, f"autonomy is refused: {refusal}" if refusal else "found", results)
+    how = f"autonomy is refused: {refusal}" if refusal else "found"
+    return Verdict(not refusal, how, {**results, "profile": path.name})  # a report that is sent in names no folder
 
 
 def _try_out(

@@ -6,7 +6,7 @@ from contextlib import ExitStack
 from itertools import pairwise
 from typing import Any, Final, NamedTuple
 
-from simconsole.devices.calibration.calibrator import calibrate
+from simconsole.devices.calibration.calibrator import calibrate, wheel_angle
 from simconsole.devices.calibration.cockpit_settings import NOBODY, cockpit_settings
 from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
 from simconsole.devices.setup.device_commands import Pace, Say
@@ -17,11 +17,13 @@ from simconsole.values.signals import NEVER_TICKS, NO_SAMPLE, Button, DeviceSamp
 from simconsole.values.units import RAD_PER_DEG
 
 HZ: Final = 250
-PEDALS: Final = ("throttle", "brake", "clutch")
+PEDALS: Final = ("throttle", "brake", "clutch", "handbrake")
 BINS_MS: Final = (2, 4, 8, 12, 16, 24, 32, 64)
 """Upper ends of the histogram of the time between two new readings."""
 CENTRE_RAD: Final = 5.0 * RAD_PER_DEG
 LOCK_SHARE: Final = 0.03
+FULL: Final = 0.99
+"""A pedal at its end: an axis has steps."""
 LATE_MS: Final = 32
 
 Hands = Callable[[float], Intent]
@@ -104,13 +106,13 @@ class Trials:
         )
         most = {other: max(getattr(each.driver, other) for each in seen) for other in PEDALS}
         wrong = [other for other in PEDALS if other != name and most[other] > 0.0]
-        ok = most[name] == 1.0 and getattr(seen[-1].driver, name) == 0.0 and not wrong
+        ok = most[name] >= FULL and getattr(seen[-1].driver, name) == 0.0 and not wrong
         how = "both ends, alone" if ok else f"moved {', '.join(wrong)}, too" if wrong else "not both ends"
         return Verdict(ok, how, {"most": most[name]})
 
     def wheel(self) -> Verdict:
-        """Turn the wheel to both locks: left first and positive, both as the profile says."""
-        lock_rad = 0.5 * self.cockpit.wheel.lock_to_lock_deg * RAD_PER_DEG
+        """Turn the wheel to both locks: left first and positive, both where its axis ends."""
+        lock_rad = max(wheel_angle(raw, self._settings) for raw in (-1.0, 1.0))
         seen = self.watch(
             "Turn the wheel to its LEFT lock, then to its RIGHT lock, then straight.",
             10.0,

@@ -20,9 +20,11 @@ from simconsole.values.units import DEG_PER_RAD
 COUNTDOWN_S: Final = 3
 _TEXTURE_HZ: Final = 20.0
 _DAMPING_PER_S: Final = 3.2
+_FRICTION_PER_S2: Final = 10.0
 _CENTRE_PER_S2: Final = 20.0
-_CENTRE_MOST_PER_S2: Final = 10.0
-"""Of the profile's inertia: gains that are stable, and a release that is slow, whatever half of it turns out to be."""
+_CENTRE_MOST_PER_S2: Final = 8.0
+_CENTRE_DAMPING_PER_S: Final = 6.0
+"""Of the profile's inertia: stable gains, and a wheel that is let go of stays below 120 deg/s, whatever it is like."""
 
 
 class Force(NamedTuple):
@@ -35,12 +37,12 @@ class Force(NamedTuple):
 
 
 def _friction(t: float, rad: float, radps: float, inertia: float) -> float:
-    return -_CENTRE_MOST_PER_S2 * inertia * radps / (abs(radps) + _CENTRE_MOST_PER_S2 / _DAMPING_PER_S)
+    return -_FRICTION_PER_S2 * inertia * radps / (abs(radps) + _FRICTION_PER_S2 / _DAMPING_PER_S)
 
 
 def _centre(t: float, rad: float, radps: float, inertia: float) -> float:
     spring = clip(-_CENTRE_PER_S2 * rad, -_CENTRE_MOST_PER_S2, _CENTRE_MOST_PER_S2)
-    return inertia * (spring - _DAMPING_PER_S * radps)
+    return inertia * (spring - _CENTRE_DAMPING_PER_S * radps)
 
 
 def _texture(t: float, rad: float, radps: float, inertia: float) -> float:
@@ -57,7 +59,7 @@ FORCES: Final = (
     Force("texture", 1.0, _texture, "A fine shiver?"),
     Force("damping", 3.0, _damping, "Turn it: does it resist turning fast?"),
     Force("friction", 3.0, _friction, "Turn it: does it drag?"),
-    Force("centre", 3.0, _centre, "Turn it: does it come back?"),
+    Force("centre", 3.0, _centre, "Turn it: does it pull to the middle?"),
 )
 
 

@@ -1,17 +1,19 @@
 """What the autopilot answers to an odometry: a command, or nothing, and then why. Pure."""
 
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Callable, Iterator, Mapping
 from typing import Final
 
 from simconsole.drivers.autopilot.others import Others
 from simconsole.drivers.autopilot.yields import Yields
 from simconsole.drivers.path_tracker.approach import why_not
 from simconsole.drivers.path_tracker.geometric import GeometricTracker, pure_pursuit, stanley
+from simconsole.drivers.path_tracker.plan import Place, plan
 from simconsole.drivers.path_tracker.signal_stops import Light, SignalStops
 from simconsole.drivers.path_tracker.speed_profile import Stop
 from simconsole.drivers.path_tracker.state_estimator import VehicleMotion
 from simconsole.drivers.path_tracker.tracker import Tracker, TrackerCommand
-from simconsole.drivers.path_tracker.tracker_settings import TIMING, CarModel
+from simconsole.drivers.path_tracker.tracker_settings import GATE, TIMING, CarModel, Gate
 from simconsole.drivers.path_tracker.tracking_statistics import TrackingStatistics
 from simconsole.world.roads.road_map import Array
 from simconsole.world.route import Route
@@ -19,13 +21,17 @@ from simconsole.world.route import Route
 _LAWS: Final = {"pure_pursuit": pure_pursuit, "stanley": stanley}
 _END_M: Final = 0.5
 _STANDING_MPS: Final = 0.05
+_OVERTAKEN_S: Final = 2.0
+"""An odometry that is older than the newest one by more than a link's longest delay is of a drive that begins."""
 
 
-def make_tracker(name: str, course: Route, car: CarModel, delay_s: float) -> Tracker | GeometricTracker:
+def make_tracker(
+    name: str, course: Route, car: CarModel, delay_s: float, gate: Gate = GATE
+) -> Tracker | GeometricTracker:
     """Return the tracker `name`, one of TRACKERS; the plain ones do not know `delay_s`."""
     if name in _LAWS:
-        return GeometricTracker(_LAWS[name], course, car)
-    return Tracker(course, car, timing=TIMING._replace(delay_s=delay_s))
+        return GeometricTracker(_LAWS[name], course, car, gate)
+    return Tracker(course, car, timing=TIMING._replace(delay_s=delay_s), gate=gate)
 
 
 class Answers:
@@ -43,10 +49,17 @@ class Answers:
         self._tracker, self._say, self._lights, self._others, self._yields = tracker, say, lights, others, yields
         self.statistics = TrackingStatistics()
         self._withholds = False
+        self._newest_s = -math.inf
 
     def answer(self, seen: VehicleMotion, engaged: bool, stamp_s: float) -> TrackerCommand | None:
-        """Return the command that answers what was seen at `stamp_s`; None: none is given."""
+        """Return the command that answers what was seen at `stamp_s`; None: none is given, as for what is overtaken."""
         tracker, statistics = self._tracker, self.statistics
+        if self._newest_s - _OVERTAKEN_S <= stamp_s < self._newest_s:
+            statistics.skipped += 1
+            return None
+        if stamp_s < self._newest_s:
+            tracker.s_m = None
+        self._newest_s = stamp_s
         if tracker.s_m is not None:
             tracker.along.stop = self._stop(tracker.s_m, seen.vx_mps, stamp_s)
         if self._others is not None:
@@ -74,6 +87,10 @@ class Answers:
             None if self._yields is None else self._yields.stop(s_m, speed_mps, stamp_s),
         )
         return min((stop for stop in stops if stop is not None), default=None)
+
+    def planned(self, seen: VehicleMotion) -> Iterator[Place]:
+        """Yield the places that are planned from what was answered last; none while no commands are given."""
+        return iter(()) if self._withholds else plan(self._tracker, seen.vx_mps)
 
     def see(self, lights: Mapping[tuple[str, int], Light]) -> None:
         """Take what traffic lights show (`lights.lights_of`)."""

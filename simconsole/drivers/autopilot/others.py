@@ -10,7 +10,7 @@ from simconsole.values.signals import FAR
 from simconsole.values.units import NS_PER_S
 from simconsole.world.roads.road_map import Array
 from simconsole.world.route import Route
-from simconsole.world.traffic.leader import Leaders
+from simconsole.world.traffic.leader import Execution, Leaders
 from simconsole.world.traffic.road_users import NOBODY, Box, RoadUser, table
 
 ROAD_USERS: Final = "/road_users"
@@ -22,9 +22,9 @@ OLD_S: Final = 1.0
 class Others:
     """Finds whom the car follows among the road users that were told last."""
 
-    def __init__(self, route: Route, vehicle: VehicleProfile) -> None:
-        """Follow `route` in `vehicle`."""
-        self._leaders = Leaders(route)
+    def __init__(self, route: Route, vehicle: VehicleProfile, execution: Execution | None = None) -> None:
+        """Follow `route` in `vehicle`; `execution` is how the search runs, plain without it."""
+        self._leaders = Leaders(route, execution)
         self._length_m = self._width_m = self._rear_m = 0.0
         if isinstance(vehicle, CarProfile):
             body = vehicle.body
@@ -70,6 +70,8 @@ def road_users_of(message: Any) -> tuple[Array, float]:
             length_m=user.size.x,
             width_m=user.size.y,
             height_m=user.size.z,
+            z_m=user.pose.position.z,
+            turn_indicators=float(user.turn_indicators),
         )
         for user in message.users
     ]

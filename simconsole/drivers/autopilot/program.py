@@ -16,14 +16,16 @@ from simconsole.drivers.autopilot.answers import Answers, make_tracker
 from simconsole.drivers.autopilot.lights import SIGNALS, SIGNALS_TYPE, lights_of, signal_stops
 from simconsole.drivers.autopilot.motion import Odometry, motion_of
 from simconsole.drivers.autopilot.others import ROAD_USERS, ROAD_USERS_TYPE, Others, road_users_of
+from simconsole.drivers.autopilot.plan_message import PLAN, PLAN_TYPE, PlanMessages
 from simconsole.drivers.autopilot.remarks import Remarks
 from simconsole.drivers.autopilot.yields import yields
 from simconsole.drivers.path_tracker.car_model import car_model
 from simconsole.drivers.path_tracker.tracker import TrackerCommand
-from simconsole.drivers.path_tracker.tracker_settings import TIMING, TRACKERS
+from simconsole.drivers.path_tracker.tracker_settings import GATE, TIMING, TRACKERS, Gate
 from simconsole.profiles.files.vehicle_files import load_vehicle
 from simconsole.profiles.files.world_files import load_world
 from simconsole.values.errors import BridgeError, OtherDriveError
+from simconsole.values.host.jit import compiled
 from simconsole.values.labels import mode_label
 from simconsole.values.signals import Mode
 from simconsole.world.kinds.worlds import open_world
@@ -46,9 +48,16 @@ class Topics(NamedTuple):
     """Names of topics on the server."""
 
     odometry: str
+    mode: str
     command: str
     signals: str
     road_users: str
+    plan: str
+
+
+STANDARD: Final = Topics(
+    odometry=ODOMETRY, mode=MODE, command=COMMAND, signals=SIGNALS, road_users=ROAD_USERS, plan=PLAN
+)
 
 
 def run(
@@ -65,7 +74,9 @@ def run(
     vehicle: str = "hatchback",
     delay_s: float = TIMING.delay_s,
     tracker: str = TRACKERS[0],
+    gate: Gate = GATE,
     dead_after_s: float = DEAD_AFTER_S,
+    plan_hz: float = 0.0,
 ) -> dict[str, Any]:
     """Drive until the server ends the session, is gone for `patience_s`, or `stop()` is true; return statistics.
 
@@ -82,7 +93,9 @@ def run(
         vehicle: the profile of the car, by name or path.
         delay_s: from an odometry's stamp to the moment at which the command that answers it acts.
         tracker: how it steers, one of `tracker_settings.TRACKERS`.
+        gate: what the console lets pass of it.
         dead_after_s: how long the server may be silent before it counts as gone.
+        plan_hz: how often a second it tells what it plans, in the odometry's time; 0: never.
 
     Raises:
         ProfileError: the world cannot be read.
@@ -91,27 +104,31 @@ def run(
     """
     world, car = open_world(load_world(course_name)), load_vehicle(vehicle)
     lights = signal_stops(world, car)
-    others = None if roads_of(world) is None else Others(world.route, car)
+    others = None if roads_of(world) is None else Others(world.route, car, compiled)
     answers = Answers(
-        make_tracker(tracker, world.route, car_model(car), delay_s), _say, lights, others, yields(world, car, lights)
+        make_tracker(tracker, world.route, car_model(car), delay_s, gate),
+        _say,
+        lights,
+        others,
+        yields(world, car, lights),
     )
     with BridgeClient(
         url, token=token, certificate=certificate, drive=drive, until_good_bye=True, dead_after_s=dead_after_s
     ) as client:
-        odometry, mode, command, signals, road_users = (
-            (rename or {}).get(topic, namespace + topic) for topic in (ODOMETRY, MODE, COMMAND, SIGNALS, ROAD_USERS)
-        )
-        client.advertise(command, CONTROL)
-        client.subscribe(odometry, "nav_msgs/Odometry", reads=Odometry)
-        client.subscribe(mode, "std_msgs/String")
+        topics = Topics._make((rename or {}).get(topic, namespace + topic) for topic in STANDARD)
+        client.advertise(topics.command, CONTROL)
+        if plan_hz > 0.0:
+            client.advertise(topics.plan, PLAN_TYPE)
+        client.subscribe(topics.odometry, "nav_msgs/Odometry", reads=Odometry)
+        client.subscribe(topics.mode, "std_msgs/String")
         if lights is not None:
-            client.subscribe(signals, SIGNALS_TYPE)
+            client.subscribe(topics.signals, SIGNALS_TYPE)
         if others is not None:
-            client.subscribe(road_users, ROAD_USERS_TYPE)
+            client.subscribe(topics.road_users, ROAD_USERS_TYPE)
         client.connect(patience_s)
         try:
-            topics = Topics(odometry, command, signals, road_users)
-            ended = _answer(client, answers, topics, stop or _never, patience_s)
+            plans = PlanMessages(client.registry, plan_hz, world.ground if plan_hz > 0.0 else None)
+            ended = _answer(client, answers, plans, topics, stop or _never, patience_s)
         except OtherDriveError:
             raise
         except BridgeError as error:
@@ -123,6 +140,7 @@ def run(
 def _answer(
     client: BridgeClient,
     answers: Answers,
+    plans: PlanMessages,
     topics: Topics,
     stop: Callable[[], bool],
     patience_s: float,
@@ -163,10 +181,13 @@ def _answer(
             answers.statistics.skipped += 1
             continue
         stamp = message.header.stamp
-        answer = answers.answer(seen, engaged, stamp.sec + stamp.nanosec * 1e-9)
+        stamp_s = stamp.sec + stamp.nanosec * 1e-9
+        answer = answers.answer(seen, engaged, stamp_s)
         if answer is not None:
             fill_command(command, stamp, answer)
             client.publish(topics.command, command)
+        if plans.is_due(stamp_s):  # after the command, which must not wait for it
+            client.publish(topics.plan, plans.message(stamp, answers.planned(seen)))
     return "stopped"
 
 

@@ -11,7 +11,7 @@ from typing import Final
 from simconsole.drivers.path_tracker.speed_control import SpeedControl
 from simconsole.drivers.path_tracker.state_estimator import VehicleMotion
 from simconsole.drivers.path_tracker.tracker import TrackerCommand
-from simconsole.drivers.path_tracker.tracker_settings import COMFORT, TIMING, CarModel
+from simconsole.drivers.path_tracker.tracker_settings import COMFORT, GATE, TIMING, CarModel, Gate, planned_within
 from simconsole.values.kernels import clip
 from simconsole.world.route import Projection, Route
 
@@ -49,15 +49,24 @@ def stanley(course: Route, place: Projection, seen: VehicleMotion, wheelbase_m: 
 class GeometricTracker:
     """Follows a course by a law of geometry; the same interface as `Tracker`."""
 
-    def __init__(self, law: Law, course: Route, car: CarModel) -> None:
-        """Steer a car by `law` along `course`."""
+    def __init__(self, law: Law, course: Route, car: CarModel, gate: Gate = GATE) -> None:
+        """Steer a car by `law` along `course`, at a speed for `gate`."""
         self.course = course
         self.s_m: float | None = None
         self.lateral_m = 0.0
         self.heading_error_rad = 0.0
         self._law, self._car = law, car
-        self.along = SpeedControl(course, COMFORT, TIMING.period_s)
+        self.along = SpeedControl(course, planned_within(COMFORT, gate), TIMING.period_s)
         self._before_rad = 0.0
+
+    @property
+    def acts_after_s(self) -> float:
+        """How long after what was seen last the car is at `s_m`: not at all, for delays are not known here."""
+        return 0.0
+
+    def offset_at(self, s_m: float) -> tuple[float, float]:
+        """Return (0, 0): the course itself is tracked."""
+        return 0.0, 0.0
 
     def step(self, seen: VehicleMotion, engaged: bool = True, time_s: float | None = None) -> TrackerCommand:
         """Return the command for the coming period; `time_s` is not used."""

@@ -1,5 +1,6 @@
 """Driving at the planned speed: acceleration from plan and speed, never with more jerk than is comfortable."""
 
+from copy import copy
 from typing import Final, NamedTuple
 
 from simconsole.drivers.car_following import Following, following_mps2
@@ -18,6 +19,7 @@ _HARDEST_MPS2: Final = 6.0
 _EMERGENCY_MPS2: Final = 3.0
 """Who must brake harder than this behind a vehicle brakes for an emergency: comfort no longer bounds the jerk."""
 _EMERGENCY_JERK_MPS3: Final = 20.0
+_LOOK_S: Final = 0.05
 
 
 class Longitudinal(NamedTuple):
@@ -80,3 +82,22 @@ class SpeedControl:
                 jerk_mps3 = _EMERGENCY_JERK_MPS3
         before, self.accel_mps2 = self.accel_mps2, approach(self.accel_mps2, wanted, jerk_mps3 * self._period_s)
         return Longitudinal(target, self.accel_mps2, (self.accel_mps2 - before) / self._period_s)
+
+    def ahead(self, s_m: float, speed_mps: float, count: int, every_s: float) -> list[float]:
+        """Return `count` places (s_m) of the coming time, `every_s` apart, if car and leader go on as they are to.
+
+        What this remembers does not change.
+        """
+        other = copy(self)
+        other._period_s = _LOOK_S
+        found = []
+        for _ in range(count):
+            for _ in range(round(every_s / _LOOK_S)):
+                after_mps = max(0.0, speed_mps + _LOOK_S * other.step(s_m, speed_mps).accel_mps2)
+                moved_m = 0.5 * _LOOK_S * (speed_mps + after_mps)
+                s_m, speed_mps = s_m + moved_m, after_mps
+                if other.leader is not None:
+                    gap_m = other.leader.gap_m + _LOOK_S * other.leader.speed_mps - moved_m
+                    other.leader = Leader(gap_m, other.leader.speed_mps)
+            found.append(s_m)
+        return found

@@ -74,11 +74,15 @@ class StateEstimator:
 
         Args:
             seen: as measured.
-            time_s: its stamp; None: one period after the one before. An interval without measurements is integrated.
+            time_s: its stamp; None: one period after the one before. An interval without measurements is integrated; a
+                stamp before the last one begins anew.
             accel_mps2: what has been asked of the car.
         """
         time_s = self._time_s + self._timing.period_s if time_s is None else time_s
-        passed_s = clip(time_s - self._time_s, 0.0, _LONGEST_S)
+        if time_s < self._time_s:  # another drive begins
+            self._pose, self._time_s, self._bias = None, time_s, 0.0
+            self.reset(self._acting)
+        passed_s = min(time_s - self._time_s, _LONGEST_S)
         self._pose = self._filtered(seen, passed_s)
         self._velocity = (seen.vx_mps, seen.vy_mps, seen.yaw_rate_radps)
         while self._under_way and self._under_way[0][0] <= time_s + _ROUNDING_S:

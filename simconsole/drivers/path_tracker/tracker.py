@@ -23,13 +23,17 @@ from simconsole.drivers.path_tracker.speed_profile import SpeedProfile
 from simconsole.drivers.path_tracker.state_estimator import StateEstimator, VehicleMotion
 from simconsole.drivers.path_tracker.tracker_settings import (
     COMFORT,
+    GATE,
     HATCHBACK,
     TIMING,
     WEIGHTS,
     CarModel,
     Comfort,
+    Gate,
     Timing,
     Weights,
+    asked_at_most,
+    planned_within,
 )
 from simconsole.values.kernels import clip
 from simconsole.world.route import Route
@@ -42,8 +46,6 @@ _STATES: Final = 6
 _CURVATURE_STEP_M: Final = 0.1
 _PUSHED_OFF_M: Final = 0.3
 _STEERING_RATE_RADPS: Final = 0.8
-_LATERAL_JERK_MPS3: Final = 6.0
-_LATERAL_MPS2: Final = 4.5
 
 
 class TrackerCommand(NamedTuple):
@@ -66,13 +68,14 @@ class Tracker:
         comfort: Comfort = COMFORT,
         timing: Timing = TIMING,
         weights: Weights = WEIGHTS,
+        gate: Gate = GATE,
     ) -> None:
         self.course = course
         self.s_m: float | None = None
         self.lateral_m = 0.0
         self.heading_error_rad = 0.0
-        self._car, self._timing = car, timing
-        self.along = SpeedControl(course, comfort, timing.period_s)
+        self._car, self._timing, self._asked = car, timing, asked_at_most(gate)
+        self.along = SpeedControl(course, planned_within(comfort, gate), timing.period_s)
         self._feedback, self._preview = _gains_by_speed(car, timing, weights)
         self._curvature_step_m, self._curvature = _curvatures(course)
         ahead_s = (np.arange(timing.preview_steps) + 0.5) * timing.period_s
@@ -95,6 +98,15 @@ class Tracker:
     def profile(self) -> SpeedProfile:
         """The planned speed."""
         return self.along.profile
+
+    @property
+    def acts_after_s(self) -> float:
+        """How long after what was seen last the car is at `s_m`: when the command takes effect."""
+        return self._timing.delay_s
+
+    def offset_at(self, s_m: float) -> tuple[float, float]:
+        """Return the offset (m) of the line that is tracked from the course at `s_m`, and its slope against it."""
+        return self._line.at(s_m)
 
     def step(self, seen: VehicleMotion, engaged: bool = True, time_s: float | None = None) -> TrackerCommand:
         """Return the command for the coming period.
@@ -146,9 +158,9 @@ class Tracker:
     def _limited(self, change: float, speed: float, engaged: bool) -> float:
         """Return the command after a change, as far as steering and gate go; while not engaged no gate holds it."""
         tightest = self._car.wheelbase_m / max(speed * speed, 1.0)
-        rate = min(_STEERING_RATE_RADPS, _LATERAL_JERK_MPS3 * tightest) if engaged else _STEERING_RATE_RADPS
+        rate = min(_STEERING_RATE_RADPS, self._asked.lateral_jerk_mps3 * tightest) if engaged else _STEERING_RATE_RADPS
         step = rate * self._timing.period_s
-        limit = min(math.tan(self._car.max_road_wheel_rad), _LATERAL_MPS2 * tightest)
+        limit = min(math.tan(self._car.max_road_wheel_rad), self._asked.lateral_mps2 * tightest)
         return clip(self._command + clip(change, -step, step), -limit, limit)
 
     def _follow(self, seen: VehicleMotion, speed: float) -> None:

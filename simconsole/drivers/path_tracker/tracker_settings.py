@@ -1,5 +1,6 @@
 """Parameters of the path tracker: the car's model, the comfort limits, the timing and the cost."""
 
+import math
 from typing import Final, NamedTuple
 
 TRACKERS: Final = ("preview", "pure_pursuit", "stanley")
@@ -49,6 +50,13 @@ class Comfort(NamedTuple):
     margin_mps: float = 0.3  # kept below the speed limit, so that overshoot does not exceed it
 
 
+class Gate(NamedTuple):
+    """What the console lets pass of steering while the autopilot drives; by default that of a session as shipped."""
+
+    lateral_mps2: float = 5.0
+    lateral_jerk_mps3: float = 7.0  # 0: no limit
+
+
 class Timing(NamedTuple):
     """The control loop's time structure."""
 
@@ -70,5 +78,27 @@ class Weights(NamedTuple):
 
 HATCHBACK: Final = CarModel()
 COMFORT: Final = Comfort()
+GATE: Final = Gate()
 TIMING: Final = Timing()
 WEIGHTS: Final = Weights()
+
+_ASKED_SHARE: Final = 0.9
+_PLANNED_ACCEL_SHARE: Final = 0.7
+_PLANNED_JERK_SHARE: Final = 0.5
+_MOST_ASKED: Final = Gate(4.5, 6.0)
+
+
+def asked_at_most(gate: Gate) -> Gate:
+    """Return how much lateral acceleration and jerk a command may ask for, so that the gate cuts nothing of it."""
+    return Gate(
+        min(_MOST_ASKED.lateral_mps2, _ASKED_SHARE * gate.lateral_mps2),
+        min(_MOST_ASKED.lateral_jerk_mps3, _ASKED_SHARE * (gate.lateral_jerk_mps3 or math.inf)),
+    )
+
+
+def planned_within(comfort: Comfort, gate: Gate) -> Comfort:
+    """Return the limits of a speed profile from which steering against errors has room below the gate's."""
+    return comfort._replace(
+        lateral_mps2=min(comfort.lateral_mps2, _PLANNED_ACCEL_SHARE * gate.lateral_mps2),
+        lateral_jerk_mps3=min(comfort.lateral_jerk_mps3, _PLANNED_JERK_SHARE * (gate.lateral_jerk_mps3 or math.inf)),
+    )

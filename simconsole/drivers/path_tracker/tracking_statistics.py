@@ -10,7 +10,7 @@ class TrackingStatistics:
     """Commands given and, while the autopilot had the car, how well it followed."""
 
     commands: int = 0
-    skipped: int = 0  # odometry with a value that is not finite
+    skipped: int = 0  # odometry with a value that is not finite, or that came after a newer one
     withheld: int = 0  # odometry that was not answered: the car is too far from the course
     at_end: bool = False  # the car has come to the end of an open course and stands there
     engaged: int = 0

@@ -8,9 +8,10 @@ light in traffic flow", Operations Research 8 (1960) 112-132.
 import math
 from typing import Final
 
-from simconsole.drivers.car_following import NEAREST_M, Following
+from simconsole.drivers.car_following import Following
 from simconsole.drivers.simulated_person.situation import Light, Situation
 from simconsole.profiles.person import RoadHabits
+from simconsole.world.traffic.following import NEAREST_M
 
 AMBER_MPS2: Final = 3.0
 """Who would have to brake harder than this for amber drives on."""

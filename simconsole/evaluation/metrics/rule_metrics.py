@@ -10,6 +10,7 @@ from simconsole.values.signals import FAR
 from simconsole.values.units import KMH_PER_MPS
 
 RULES: Final = {
+    "collision": "collision",
     "red_light": "red light passed",
     "wrong_way": "wrong way",
     "off_road": "off the road",
@@ -34,16 +35,16 @@ class RuleEvent(NamedTuple):
 
 def rule_events(drive: Drive) -> list[RuleEvent]:
     """Return every breach, in the order of their first ticks; none of a drive from before there were rules."""
-    columns = tuple(f"rules.{rule}" for rule in RULES)
+    known = [rule for rule in RULES if not drive.names or f"rules.{rule}" in drive.names]
     try:
-        broken = drive.columns(*columns)
+        broken = drive.columns(*(f"rules.{rule}" for rule in known))
     except RecordingError:
         return []
     if not any(column.any() for column in broken):
         return []
     facts = drive.columns(*_FACTS)
     found = []
-    for rule, column in zip(RULES, broken, strict=True):
+    for rule, column in zip(known, broken, strict=True):
         found += _events(drive.first_tick, rule, column, facts)
     return sorted(found, key=lambda event: (event.first_tick, event.rule))
 

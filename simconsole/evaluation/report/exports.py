@@ -1,7 +1,5 @@
 """What is made from a bundle afterwards: report.html and scene.rrd. Nothing a replay needs."""
 
-import subprocess
-import sys
 from collections.abc import Callable
 from contextlib import nullcontext
 from functools import partial
@@ -15,7 +13,7 @@ from simconsole.recording.bundles.bundle import Bundle, add_export, open_bundle
 from simconsole.recording.bundles.manifest import Manifest, refuse_signed
 from simconsole.recording.bundles.provenance import facts as provenance_facts
 from simconsole.recording.bundles.replay_bundle import recorded_session
-from simconsole.session.scene_job import LIVE_SCENE
+from simconsole.session.scene_worker import LIVE_SCENE
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.world.kinds.worlds import open_world
 from simconsole.world.route import Route
@@ -89,11 +87,6 @@ def write_scene(folder: Path, told: Told = _untold) -> Path:
         wait()
     add_export(folder, SCENE, instead_of=LIVE_SCENE)
     return folder / SCENE
-
-
-def open_viewer(path: Path) -> None:
-    """Open a scene in rerun's viewer, in a process of its own that stays open when this one ends."""
-    subprocess.Popen([sys.executable, "-m", "rerun", str(path)], stdin=subprocess.DEVNULL)
 
 
 def _route(resolved: ResolvedSession) -> Route | None:

@@ -1,6 +1,7 @@
 """The pictures of a report, as SVG text that is the same for the same drive, byte for byte (matplotlib, on demand)."""
 
 import io
+from collections.abc import Callable
 from typing import Any, Final
 
 from simconsole.evaluation.manoeuvres.attempt import Panel
@@ -12,7 +13,7 @@ from simconsole.evaluation.report.figure_panels import draw_panels
 from simconsole.evaluation.report.figure_traces import draw_traces
 from simconsole.world.route import Route
 
-STYLE: Final[dict[str, Any]] = {
+STYLE: Final[Any] = {
     "font.family": "DejaVu Sans",  # ships with matplotlib, so the same everywhere
     "font.size": 9.0,
     "axes.titlesize": 10.0,
@@ -53,18 +54,32 @@ def panels_svg(name: str, panels: tuple[Panel, ...]) -> str:
     return _svg(name, (9.2, 2.9 * rows), lambda figure: draw_panels(figure, panels))
 
 
-def _svg(name: str, size_inch: tuple[float, float], draw: Any) -> str:
+def figure(size_inch: tuple[float, float], draw: Callable[[Any], None]) -> Any:
+    """Return a figure of matplotlib in the style of the reports; `draw` puts the axes in. Notebooks show it as SVG."""
     from matplotlib import rc_context
     from matplotlib.backends.backend_svg import FigureCanvasSVG
     from matplotlib.figure import Figure
+
+    class Shown(Figure):
+        def _repr_svg_(self) -> str:
+            text = io.StringIO()
+            self.savefig(text, format="svg")
+            return text.getvalue()
+
+    with rc_context(STYLE):
+        made = Shown(figsize=size_inch, layout="constrained")
+        FigureCanvasSVG(made)
+        draw(made)
+    return made
+
+
+def _svg(name: str, size_inch: tuple[float, float], draw: Callable[[Any], None]) -> str:
+    from matplotlib import rc_context
 
     # The salt makes the identifiers inside equal in every run, and different between the figures of one page.
     settings: Any = {**STYLE, "svg.hashsalt": f"simconsole {name}"}
     text = io.StringIO()
     with rc_context(settings):
-        figure = Figure(figsize=size_inch, layout="constrained")
-        FigureCanvasSVG(figure)
-        draw(figure)
-        figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
+        figure(size_inch, draw).savefig(text, format="svg", metadata={"Date": None, "Creator": None})
     svg = text.getvalue()
     return svg[svg.index("<svg") :]

@@ -7,7 +7,7 @@ from typing import Final, NamedTuple
 
 from simconsole.evaluation.manoeuvres.attempt import Result
 from simconsole.evaluation.report.figures import panels_svg
-from simconsole.evaluation.report.page import STYLE
+from simconsole.evaluation.report.page import html_page
 from simconsole.profiles.manoeuvre import Limit
 from simconsole.values.errors import RecordingError
 from simconsole.values.host.files import write_atomically
@@ -32,13 +32,8 @@ def write_handling_report(path: Path, chapters: Sequence[Chapter]) -> None:
     Raises:
         RecordingError: the file cannot be written.
     """
-    body = "\n".join(_chapter(chapter) for chapter in chapters)
-    text = (
-        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">\n'
-        '<meta name="viewport" content="width=device-width,initial-scale=1">\n'
-        f"<title>Test manoeuvres</title><style>{STYLE}</style></head><body>\n<h1>Test manoeuvres</h1>\n{body}\n"
-        "</body></html>\n"
-    )
+    parts = ["<h1>Test manoeuvres</h1>", *map(_chapter, chapters)]
+    text = html_page("Test manoeuvres", parts)
     try:
         write_atomically(path, text)
     except OSError as error:

@@ -38,7 +38,7 @@ _TAKEOVER: Final = (
     ("peak_deviation_m", "largest deviation, m"),
     ("peak_lateral_jerk_mps3", "largest lateral jerk, m/s3"),
 )
-_LABELS: Final[tuple[tuple[str, str, str], ...]] = (
+METRICS: Final[tuple[tuple[str, str, str], ...]] = (
     ("duration_s", "Duration", "{:.1f} s"),
     ("distance_m", "Distance", "{:.1f} m"),
     ("mean_speed_kmh", "Mean speed", "{:.1f} km/h"),
@@ -52,6 +52,7 @@ _LABELS: Final[tuple[tuple[str, str, str], ...]] = (
     ("lateral_max_at_m", "Largest error after", "{:.0f} m"),
     ("max_lateral_accel_mps2", "Highest lateral acceleration", "{:.2f} m/s²"),
 )
+"""Key of a figure in the metrics, what people read for it, and how it is written."""
 
 
 def write_report(
@@ -100,10 +101,6 @@ def page(
 ) -> str:
     """Return the page's HTML."""
     parts = [
-        "<!DOCTYPE html>",
-        '<html lang="en"><head><meta charset="utf-8">',
-        '<meta name="viewport" content="width=device-width,initial-scale=1">',
-        f"<title>{escape(title)}</title><style>{STYLE}</style></head><body>",
         f"<h1>{escape(title)}</h1>",
         '<p class="note">simconsole drive report. Lateral errors are those of base_link (centre of the rear axle) '
         "from the theoretical path, over every tick in which the autopilot drove, and over those in which the person "
@@ -120,10 +117,19 @@ def page(
         *(("<h2>Force feedback</h2>", _wheel_table(found["force_feedback"])) if found["force_feedback"] else ()),
         *(("<h2>Latency</h2>", _latency_table(latency_us)) if latency_us else ()),
         *(("<h2>Drive</h2>", _extra_table(extra)) if extra else ()),
-        "</body></html>",
-        "",
     ]
-    return "\n".join(parts)
+    return html_page(title, parts)
+
+
+def html_page(title: str, parts: Sequence[str]) -> str:
+    """Return a whole page in the style of the reports; `parts` are HTML."""
+    head = [
+        "<!DOCTYPE html>",
+        '<html lang="en"><head><meta charset="utf-8">',
+        '<meta name="viewport" content="width=device-width,initial-scale=1">',
+        f"<title>{escape(title)}</title><style>{STYLE}</style></head><body>",
+    ]
+    return "\n".join((*head, *parts, "</body></html>", ""))
 
 
 def _takeovers_table(found: Mapping[str, Any]) -> str:
@@ -155,7 +161,7 @@ def _tiles(found: Mapping[str, Any]) -> str:
 def _metrics_table(found: Mapping[str, Any]) -> str:
     parts = (found, found["autonomous"] or {}, found["manual"] or {})
     lines = ["<table><tr><th></th><th class=n>whole drive</th><th class=n>autopilot</th><th class=n>person</th></tr>"]
-    for key, label, form in _LABELS:
+    for key, label, form in METRICS:
         cells = (form.format(values[key]) if values.get(key) is not None else "-" for values in parts)
         lines.append(f"<tr><th>{label}</th>{''.join(f'<td class=n>{cell}</td>' for cell in cells)}</tr>")
     return "\n".join((*lines, "</table>"))

@@ -18,12 +18,19 @@ from typing import Final
 from simconsole.processes.lifetimes import ATTACHED, end, follow_parent, spawn
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.replay_bundle import recorded_session
+from simconsole.recording.log_header import ACTS
 from simconsole.recording.reading import Recording
+from simconsole.recording.recorded_plans import recorded_plans
 from simconsole.recording.recorded_road_users import recorded_road_users
 from simconsole.scene.entities import Array
-from simconsole.scene.timeline import NEEDED, Ticks
+from simconsole.scene.operator_acts import act_entry
+from simconsole.scene.timeline import Ticks
 from simconsole.scene.viewer.export import export
-from simconsole.session.scene_job import scene_job
+from simconsole.scene.viewer.job import job_of
+from simconsole.session.camera_worker import DrawCamera, drawn_camera
+from simconsole.session.scene_worker import scene_columns, scene_source
+from simconsole.session.view_job import view_job
+from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import SimConsoleError, WorkerError
 from simconsole.values.host.files import draft_of
 
@@ -108,13 +115,36 @@ def write(folder: Path) -> None:
     ticks = (
         bundle.manifest.ticks if bundle.manifest.finished else sum(len(part.ticks) for part in bundle.log.blocks(()))
     )
-    job = scene_job(resolved, NEEDED, bundle.log.header.tick_hz)
-    export(job, _told(bundle.log, ticks), folder / SCENE, recorded_road_users(bundle.log))
+    header = bundle.log.header
+    columns = scene_columns(resolved, header.columns)
+    job = job_of(scene_source(resolved, columns, header.tick_hz))
+    acts = bundle.log.messages(ACTS) if any(stream.name == ACTS for stream in header.streams) else ()
+    export(
+        job,
+        _told(bundle.log, columns, ticks),
+        folder / SCENE,
+        road_users=recorded_road_users(bundle.log),
+        plans=recorded_plans(bundle.log),
+        entries=[act_entry(message.content, header.tick_hz) for message in acts],
+        latencies=bundle.manifest.summary.get("latency_us"),
+        camera=_camera(resolved),
+    )
 
 
-def _told(recording: Recording, ticks: int) -> Iterator[tuple[Ticks, Array]]:
+def _camera(resolved: ResolvedSession) -> DrawCamera | None:
+    """Return what draws the session's camera; None where it has none, or this machine no OpenGL for it."""
+    bridge = resolved.session.outputs.bridge
+    if bridge is None or bridge.camera is None:
+        return None
+    try:
+        return drawn_camera(view_job(resolved), bridge.camera)
+    except WorkerError:
+        return None
+
+
+def _told(recording: Recording, columns: tuple[str, ...], ticks: int) -> Iterator[tuple[Ticks, Array]]:
     done = 0
-    for block in recording.blocks(NEEDED):
+    for block in recording.blocks(columns):
         yield block.ticks, block.vectors
         done += len(block.ticks)
         print(f"{done / max(ticks, 1):.4f}", flush=True)

@@ -1,5 +1,6 @@
 """Pictures of a recorded drive, drawn by OpenGL into memory."""
 
+import sys
 from collections.abc import Iterator
 from typing import Literal, NamedTuple
 
@@ -8,16 +9,17 @@ from msgspec.structs import replace
 from numpy.typing import NDArray
 
 from simconsole.evaluation.video.moments import Moment
-from simconsole.hud.driver_view.scene import view_scene
+from simconsole.hud.driver_view.scene import NO_MODELS, Models
 from simconsole.hud.gl.cockpit_picture import CockpitPicture
 from simconsole.hud.gl.context import renderer_name, windowless_context
 from simconsole.hud.layout import check_screen
-from simconsole.hud.screen import Screen, fit
+from simconsole.hud.screen import Screen, fit, text_factor
 from simconsole.hud.window.display_memory import DisplayMemory
 from simconsole.profiles.view import DriverViewProfile, HudProfile
 from simconsole.session.external_view import display_settings
-from simconsole.session.view_job import view_job
+from simconsole.session.view_job import brought_models, view_job
 from simconsole.tick.assembly import ResolvedSession
+from simconsole.values.errors import ProfileError
 
 Pixels = NDArray[np.uint8]
 CameraName = Literal["driver", "chase", "bird"]
@@ -32,6 +34,7 @@ class Wanted(NamedTuple):
     camera: CameraName = "driver"
     night: bool = False
     rich: bool = False  # mirrors, shadows and smooth edges, also where the processor draws
+    large_text: bool = False
 
 
 class DrivePictures:
@@ -48,18 +51,24 @@ class DrivePictures:
         profile = replace(
             hud.view or DriverViewProfile(), camera=wanted.camera, night=wanted.night, always_rich=wanted.rich
         )
-        self._screen = Screen(wanted.width_px, wanted.height_px, hud.screen_width_m, hud.eye_distance_m, has_view=True)
-        check_screen(self._screen, "--size")
-        job = view_job(resolved)
+        self._screen = Screen(
+            wanted.width_px,
+            wanted.height_px,
+            hud.screen_width_m,
+            hud.eye_distance_m,
+            has_view=True,
+            text=text_factor(large=wanted.large_text or hud.large_text),
+        )
+        settings = display_settings(resolved)
+        check_screen(self._screen, "--size", settings)
+        job = view_job(resolved, _models(resolved))
         context = windowless_context()
         self.renderer = renderer_name(context)
-        scene = view_scene(job.drawing, job.limit_kmh, job.size)
-        self._picture = CockpitPicture(
-            context, scene, profile, fit(self._screen, wanted.width_px, wanted.height_px), job.steering_ratio
-        )
+        fitted = fit(self._screen, wanted.width_px, wanted.height_px)._replace(display=hud.display)
+        self._picture = CockpitPicture(context, job.scene(), profile, fitted, job.steering_ratio)
         self.is_cheap = self._picture.is_cheap
         self._target = context.simple_framebuffer((wanted.width_px, wanted.height_px), components=RGB)
-        self._memory = DisplayMemory(display_settings(resolved))
+        self._memory = DisplayMemory(settings)
 
     def pass_over(self, earlier: Iterator[Moment]) -> None:
         """Let the instruments see moments that are not drawn: what they show depends on what was before."""
@@ -77,3 +86,12 @@ class DrivePictures:
     def draw_all(self, frames: Iterator[Moment]) -> Iterator[Pixels]:
         """Yield every frame."""
         return (self.draw(moment) for moment in frames)
+
+
+def _models(resolved: ResolvedSession) -> Models:
+    """Return the models that the drive was seen with; a bundle has not got them, and may have come from elsewhere."""
+    try:
+        return brought_models(resolved)
+    except ProfileError as problem:
+        print(f"driver's view: {problem}; drawn without", file=sys.stderr)
+        return NO_MODELS

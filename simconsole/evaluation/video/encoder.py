@@ -25,11 +25,20 @@ class Frame(NamedTuple):
 
 THREADS: Final = 2
 """Fixed: the same pictures give the same bytes on every machine."""
-OPTIONS: Final = {"preset": "veryfast", "crf": "23"}
+PRESET: Final = "veryfast"
+CRF: Final = 23
+SOUND_BPS: Final = 128_000
 
 
-def write_video(path: Path, frames: Iterable[Frame], fps: int) -> int:
+def write_video(path: Path, frames: Iterable[Frame], fps: int, crf: int = CRF, sound_bps: int = SOUND_BPS) -> int:
     """Write frames of one even size as a video; return how many. An error leaves no file.
+
+    Args:
+        path: The new file.
+        frames: Pictures with their sound, in their order.
+        fps: Frames a second.
+        crf: Constant rate factor of x264, 0 to 51: the larger, the smaller and coarser.
+        sound_bps: Bits a second of the sound.
 
     Raises:
         RecordingError: the encoder is not installed, or the file cannot be written.
@@ -41,10 +50,10 @@ def write_video(path: Path, frames: Iterable[Frame], fps: int) -> int:
     count = 0
     try:
         with replaced(path) as draft, av.open(str(draft), "w", format="mp4") as file:
-            stream = file.add_stream("libx264", rate=fps, options=OPTIONS)
+            stream = file.add_stream("libx264", rate=fps, options={"preset": PRESET, "crf": f"{crf}"})
             stream.pix_fmt = "yuv420p"
             stream.codec_context.thread_count = THREADS
-            voice = _sound_stream(file)
+            voice = _sound_stream(file, sound_bps)
             for pixels, sound in frames:
                 if count == 0:
                     stream.height, stream.width = pixels.shape[:2]
@@ -58,8 +67,8 @@ def write_video(path: Path, frames: Iterable[Frame], fps: int) -> int:
     return count
 
 
-def _sound_stream(file: Any) -> Any:
-    voice = file.add_stream("aac", rate=RATE_HZ, layout="stereo")
+def _sound_stream(file: Any, sound_bps: int) -> Any:
+    voice = file.add_stream("aac", rate=RATE_HZ, layout="stereo", bit_rate=sound_bps)
     voice.codec_context.thread_count = 1
     return voice
 

@@ -61,16 +61,17 @@ class _Traffic:
     def __init__(self, recording: Recording) -> None:
         self._steps = recorded_road_users(recording)
         self._tick_hz = recording.header.tick_hz
+        self._before: RoadUsersAt | None = None
         self._now: RoadUsersAt | None = None
         self._next = next(self._steps, None)
 
     def beside(self, shown: ShownVehicle, tick: int) -> ShownVehicle:
         """Return the moment after `tick` with its road users."""
         while self._next is not None and self._next.tick <= tick:
-            self._now, self._next = self._next, next(self._steps, None)
+            self._before, self._now, self._next = self._now, self._next, next(self._steps, None)
         if self._now is None:
             return shown
-        return shown._replace(others=at_moment(self._now, shown.t_s, self._tick_hz))
+        return shown._replace(others=at_moment(self._now, shown.t_s, self._tick_hz, self._before))
 
 
 def _snapshots(recording: Recording) -> Iterator[Snapshot]:

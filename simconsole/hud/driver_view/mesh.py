@@ -71,6 +71,16 @@ def joined(parts: Sequence[Vertices]) -> Vertices:
     return np.concatenate(parts) if parts else np.zeros(0, VERTEX)
 
 
+def placed(mesh: Vertices, place_m: tuple[float, float, float], yaw_rad: float, scale: float) -> Vertices:
+    """Return a mesh `scale` times as large, turned about z, and moved."""
+    made = mesh.copy()
+    cosine, sine = math.cos(yaw_rad), math.sin(yaw_rad)
+    turn = np.array(((cosine, -sine, 0.0), (sine, cosine, 0.0), (0.0, 0.0, 1.0)))
+    made["position"] = scale * (mesh["position"] @ turn.T) + np.array(place_m)
+    made["normal"][:, :3] = encoded((mesh["normal"][:, :3].astype(np.float64) - 128.0) / 127.0 @ turn.T)
+    return made
+
+
 def box(place: Box, colour: Colour, roof: Colour | None = None, material: Material = Material.PLAIN) -> Vertices:
     """Return a box without its underside; its roof may have a colour of its own."""
     cosine, sine = math.cos(place.yaw_rad), math.sin(place.yaw_rad)

@@ -5,14 +5,20 @@ from typing import Final
 
 import numpy as np
 
-from simconsole.hud.driver_view.mesh import Array
-from simconsole.hud.driver_view.vehicle_body import Size, VehicleMeshes, vehicle_meshes
+from simconsole.hud.driver_view.mesh import Array, Colour, Vertices
+from simconsole.hud.driver_view.vehicle_body import PAINT, Size, VehicleMeshes, vehicle_meshes
 from simconsole.world.traffic.road_users import RoadUser, RoadUsersAt, users
 
 SIZE: Final = Size(length_m=4.4, width_m=1.8, height_m=1.5, rear_overhang_m=0.9, wheelbase_m=2.6)
 """Of the vehicle that stands for all: others are it, stretched."""
+PAINTS: Final[tuple[Colour, ...]] = (
+    (206, 208, 210), (40, 42, 46), (140, 144, 150), (150, 34, 34), (54, 92, 150), (226, 224, 216), (44, 84, 66),
+)  # fmt: skip
+"""Of other vehicles."""
 LONGEST_S: Final = 0.5
 """Nobody is moved further on than this after the last step that came."""
+SHARPEST_RAD: Final = 0.3
+"""Who has turned by more in a step has turned round on the spot, as people do, and does not go on turning."""
 
 
 def meshes() -> VehicleMeshes:
@@ -20,15 +26,46 @@ def meshes() -> VehicleMeshes:
     return vehicle_meshes(SIZE)
 
 
-def at_moment(newest: RoadUsersAt, t_s: float, tick_hz: int) -> tuple[RoadUser, ...]:
-    """Return the road users at `t_s`: moved on from their last step, straight ahead at their speed."""
+def bodies() -> tuple[Vertices, ...]:
+    """Return the body of the vehicle that stands for all in each paint."""
+    body = meshes().body
+    painted = (body["colour"][:, :3] == PAINT).all(axis=1)
+    found = []
+    for paint in PAINTS:
+        made = body.copy()
+        made["colour"][painted, :3] = paint
+        found.append(made)
+    return tuple(found)
+
+
+def paint_of(user: RoadUser) -> int:
+    """Return which of the paints a road user has, as long as it is there."""
+    return int(user.id) % len(PAINTS)
+
+
+def at_moment(newest: RoadUsersAt, t_s: float, tick_hz: int, before: RoadUsersAt | None = None) -> tuple[RoadUser, ...]:
+    """Return the road users at `t_s`: moved on from their last step at their speed, and on in their turn.
+
+    Not between the last two steps: that would show who drives ahead a step's way too near.
+
+    Args:
+        newest: Their last step.
+        t_s: The moment.
+        tick_hz: Ticks of a second.
+        before: The step before, which tells how fast they turn; None: they go straight ahead.
+    """
     late_s = min(max(t_s - newest.tick / tick_hz, 0.0), LONGEST_S)
-    return tuple(
-        user._replace(
-            x_m=user.x_m + late_s * user.speed_mps * math.cos(user.yaw_rad),
-            y_m=user.y_m + late_s * user.speed_mps * math.sin(user.yaw_rad),
-        )
-        for user in users(newest.users)
+    step_s = 0.0 if before is None else (newest.tick - before.tick) / tick_hz
+    yaws = {} if before is None or step_s <= 0.0 else {user.id: user.yaw_rad for user in users(before.users)}
+    return tuple(_moved_on(user, late_s, yaws.get(user.id, user.yaw_rad), step_s) for user in users(newest.users))
+
+
+def _moved_on(user: RoadUser, late_s: float, yaw_before: float, step_s: float) -> RoadUser:
+    turned = math.remainder(user.yaw_rad - yaw_before, math.tau)
+    more = turned * min(late_s / step_s, 1.0) if step_s > 0.0 and abs(turned) < SHARPEST_RAD else 0.0
+    way_m, yaw = late_s * user.speed_mps, user.yaw_rad + 0.5 * more
+    return user._replace(
+        x_m=user.x_m + way_m * math.cos(yaw), y_m=user.y_m + way_m * math.sin(yaw), yaw_rad=user.yaw_rad + more
     )
 
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from simconsole.hud.driver_view.mesh import Colour, Material, Vertices, facets, joined, left_of, quads, ribbon
 from simconsole.hud.driver_view.occupancy import Occupancy
+from simconsole.hud.driver_view.surroundings import Limits, in_town
 from simconsole.world.drawing import Drawing
 from simconsole.world.triangles import triangulate
 
@@ -18,6 +19,7 @@ ASPHALT: Final[Colour] = (74, 77, 82)
 PAINT: Final[Colour] = (232, 233, 228)
 KERB: Final[Colour] = (168, 166, 160)
 PAVEMENT: Final[Colour] = (140, 138, 134)
+GRAVEL: Final[Colour] = (128, 120, 104)
 MEADOW: Final[Colour] = (88, 116, 62)
 LAWN: Final[Colour] = (80, 124, 66)
 
@@ -27,6 +29,8 @@ GAP_M: Final = 6.0  # (RMS: built-up areas, dash to gap 1:2)
 KERB_HEIGHT_M: Final = 0.12
 KERB_WIDTH_M: Final = 0.15
 PAVEMENT_M: Final = 2.2
+VERGE_M: Final = 1.5
+STATION_STEP: Final = 10
 LAND_M: Final = 3000.0  # from the course to the rim of the land
 PROBE_M: Final = 0.9
 THIN_M: Final = 0.005
@@ -42,6 +46,7 @@ class RoadMeshes(NamedTuple):
     markings: Vertices
     crossings: Vertices
     stop_lines: Vertices
+    verges: Vertices
     kerbs: Vertices
 
 
@@ -55,8 +60,15 @@ def occupancy_of(drawing: Drawing) -> Occupancy:
     return grid
 
 
-def road_meshes(drawing: Drawing, taken: Occupancy) -> RoadMeshes:
-    """Return a drawing's meshes; `taken` is the road's ground, by which a kerb finds its outer side."""
+def road_meshes(drawing: Drawing, taken: Occupancy, limits: Limits = ()) -> RoadMeshes:
+    """Return a drawing's meshes.
+
+    Args:
+        drawing: The world.
+        taken: The road's ground, by which a kerb finds its outer side.
+        limits: Along the drawing's path; a road outside of towns has no kerbs but verges.
+    """
+    borders = [_border(line, taken, _in_town(drawing.path, limits, line)) for line in drawing.edges]
     dashes = [dash for line in drawing.centre_lines for dash in dashes_of(line)]
     lines = [thinned(line) for line in (*drawing.edges, *dashes)]
     return RoadMeshes(
@@ -66,7 +78,8 @@ def road_meshes(drawing: Drawing, taken: Occupancy) -> RoadMeshes:
         markings=joined([ribbon(line, -0.5 * LINE_M, 0.5 * LINE_M, 0.0, PAINT, Material.PLAIN) for line in lines]),
         crossings=joined([flat(polygon, PAINT) for polygon in drawing.zebras]),
         stop_lines=joined([flat(polygon, PAINT) for polygon in drawing.stop_lines]),
-        kerbs=joined([_kerb(line, taken) for line in drawing.edges]),
+        verges=joined([verge for verge, _ in borders]),
+        kerbs=joined([kerb for _, kerb in borders]),
     )
 
 
@@ -115,18 +128,32 @@ def dashes_of(line: Array) -> list[Array]:
     return found
 
 
-def _kerb(line: Array, taken: Occupancy) -> Vertices:
-    """Return kerb and pavement along an edge of the road, where its outer side is free."""
+def _in_town(path: Array, limits: Limits, line: Array) -> NDArray[np.bool_]:
+    """Return for each point [N, 2] of a line whether the path has a town's limit where it is nearest."""
+    sparse = path[::STATION_STEP]
+    way = np.concatenate(((0.0,), np.cumsum(np.hypot(*np.diff(path, axis=0).T))))[::STATION_STEP]
+    if len({bool(town) for town in in_town(limits, way)}) == 1:
+        return np.broadcast_to(in_town(limits, way[:1]), len(line))
+    away = (line[:, None, :] - sparse[None, :, :]) ** 2
+    return in_town(limits, way[away.sum(axis=2).argmin(axis=1)])
+
+
+def _border(line: Array, taken: Occupancy, town: NDArray[np.bool_]) -> tuple[Vertices, Vertices]:
+    """Return the verge, and kerb and pavement, along an edge of the road, where its outer side is free."""
     if len(line) < 2:
-        return joined([])
+        return joined([]), joined([])
     across = left_of(line)
-    parts: list[Vertices] = []
+    verges: list[Vertices] = []
+    kerbs: list[Vertices] = []
     for side in (-1.0, 1.0):
         free = ~taken.is_taken(line + side * PROBE_M * across)
-        for start, end in _runs(free):
+        for start, end in _runs(free & town):
             part = thinned(line[start:end])
-            parts += _kerb_part(part, left_of(part), side)
-    return joined(parts)
+            kerbs += _kerb_part(part, left_of(part), side)
+        for start, end in _runs(free & ~town):
+            right, left = sorted((0.5 * LINE_M * side, VERGE_M * side))
+            verges.append(ribbon(thinned(line[start:end]), right, left, 0.0, GRAVEL, Material.ROAD))
+    return joined(verges), joined(kerbs)
 
 
 def _kerb_part(line: Array, across: Array, side: float) -> Sequence[Vertices]:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from simconsole.hud.driver_view.hills import LAYER_M, draped, heights, land, lifted
 from simconsole.hud.driver_view.mesh import VERTEX, Box, Colour, Material, Vertices, box, cone, joined, quads, upright
 from simconsole.hud.driver_view.road import MEADOW, occupancy_of, road_meshes
-from simconsole.hud.driver_view.surroundings import NO_SURROUNDINGS, surroundings
+from simconsole.hud.driver_view.surroundings import NO_SURROUNDINGS, Limits, surroundings
 from simconsole.hud.driver_view.vehicle_body import Size, VehicleMeshes, vehicle_meshes
 from simconsole.values.height_field import HeightField
 from simconsole.world.drawing import Drawing
@@ -37,6 +37,17 @@ class Pieces(NamedTuple):
     radius: Array  # [N] in m
 
 
+class Models(NamedTuple):
+    """What a lab has brought: things in `map`, and the vehicle's body in base_link; without vertices: none."""
+
+    world: Vertices
+    body: Vertices
+
+
+NO_MESH: Final = np.zeros(0, VERTEX)
+NO_MODELS: Final = Models(NO_MESH, NO_MESH)
+
+
 class ViewScene(NamedTuple):
     """All that a renderer needs before the first frame."""
 
@@ -61,23 +72,35 @@ class Part(NamedTuple):
     signal: tuple[str, int] | None = None  # of a lamp: which link of which signal it shows
 
 
-def world_parts(drawing: Drawing | None, limit_kmh: float) -> tuple[Part, ...]:
-    """Return all that stands still: of a world, or an empty plain with a grid of lines where a session has none."""
+def world_parts(drawing: Drawing | None, limits: Limits, models: Vertices = NO_MESH) -> tuple[Part, ...]:
+    """Return all that stands still: of a world, or an empty plain with a grid of lines where a session has none.
+
+    Args:
+        drawing: The world.
+        limits: Of its road.
+        models: What a lab has put there.
+    """
+    own = _own_parts(drawing, limits)
+    return (*own, Part("models", models)) if len(models) else own
+
+
+def _own_parts(drawing: Drawing | None, limits: Limits) -> tuple[Part, ...]:
     if drawing is None:
         land, grid = _plain()
         return Part("land", land, 0), Part("grid", grid, 1)
     taken = occupancy_of(drawing)
-    road = road_meshes(drawing, taken)
-    indoors = bool(drawing.walls)  # no houses and trees on the floor of an arena
-    beside = NO_SURROUNDINGS if indoors else surroundings(drawing.path, limit_kmh, taken, drawing.ground)
+    road = road_meshes(drawing, taken, limits)
+    told = bool(drawing.walls)  # an arena, or a map with buildings: nothing is made up beside what it says
+    beside = NO_SURROUNDINGS if told else surroundings(drawing.path, limits, taken, drawing.ground)
     lamps = [
         Part(f"signal_{index}_{name}", _lamp(light, height_m, _unlit(colour)), signal=_told(light))
         for index, light in enumerate(drawing.lights)
         for name, height_m, colour in zip(LAMP_NAMES, LAMP_HEIGHTS_M, LAMPS, strict=True)
     ]
-    walls = [Part("walls", joined([upright(line, WALL) for line in drawing.walls]))] if indoors else []
+    walls = [Part("walls", joined([upright(line, WALL) for line in drawing.walls]))] if told else []
     parts = (
         Part("land", road.land, 0),
+        Part("verges", road.verges, 1),
         Part("asphalt", road.asphalt, 1),
         Part("islands", road.islands, 2),
         Part("markings", road.markings, 3),
@@ -103,9 +126,10 @@ def _on_ground(part: Part, ground: HeightField) -> Part:
     return part if part.name == "buildings" else part._replace(mesh=lifted(part.mesh, ground))
 
 
-def view_scene(drawing: Drawing | None, limit_kmh: float, size: Size) -> ViewScene:
+def view_scene(drawing: Drawing | None, limits: Limits, size: Size, models: Models = NO_MODELS) -> ViewScene:
     """Return the scene of a world, or of an empty plain where a session has none, and of a vehicle."""
-    parts = world_parts(drawing, limit_kmh)
+    parts = world_parts(drawing, limits, models.world)
+    vehicle = vehicle_meshes(size)
     ground = None if drawing is None else drawing.ground
     heights = sorted({part.layer for part in parts if part.layer is not None})
     layers = [joined([part.mesh for part in parts if part.layer == height]) for height in heights]
@@ -113,7 +137,7 @@ def view_scene(drawing: Drawing | None, limit_kmh: float, size: Size) -> ViewSce
     return ViewScene(
         layers=tuple(pieces(layer) for layer in layers),
         solids=pieces(solids),
-        vehicle=vehicle_meshes(size),
+        vehicle=vehicle._replace(body=models.body) if len(models.body) else vehicle,
         size=size,
         ground=ground,
         lights=() if drawing is None else drawing.lights,

@@ -1,6 +1,7 @@
 """What stands beside the road where the world does not say: houses, trees and speed signs, the same in every drive."""
 
 import math
+from collections.abc import Iterator, Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -17,6 +18,13 @@ SEED: Final = 20180607
 HOUSE_EVERY_M: Final = 24.0
 TREE_EVERY_M: Final = 14.0
 SIGN_EVERY_M: Final = 400.0
+TOWN_KMH: Final = 60.0
+"""Up to this limit there are houses, kerbs and pavements beside a road; above it trees further away."""
+COUNTRY_TREE_M: Final = 5.0
+"""By how much further."""
+FIRST_SIGN_M: Final = 30.0
+"""From where the path begins; a limit that begins further on has its sign there, or a few metres later."""
+SIGN_LATER_M: Final = (0.0, 10.0, 20.0, 30.0)
 SIDES_M: Final = (-1.0, 1.0)
 BEHIND_PAVEMENT_M: Final = 4.6
 WALLS: Final[tuple[Colour, ...]] = ((196, 178, 152), (178, 152, 132), (206, 200, 190), (158, 120, 104), (186, 188, 178))
@@ -28,11 +36,24 @@ SIGN_RED: Final[Colour] = (176, 24, 32)
 SIGN_WHITE: Final[Colour] = (240, 240, 238)
 INK: Final[Colour] = (24, 24, 26)
 SIGN_RADIUS_M: Final = 0.3
-SIGN_ASIDE_M: Final = 3.0
+SIGN_ASIDES_M: Final = (3.0, 6.5, 10.0, 13.5)
+"""To the right of the path: the nearest that no other lane takes."""
 _DIGITS: Final = {
     "0": (7, 5, 5, 5, 7), "1": (2, 6, 2, 2, 7), "2": (7, 1, 7, 4, 7), "3": (7, 1, 7, 1, 7), "4": (5, 5, 7, 1, 1),
     "5": (7, 4, 7, 1, 7), "6": (7, 4, 7, 5, 7), "7": (7, 1, 1, 2, 2), "8": (7, 5, 7, 5, 7), "9": (7, 5, 7, 1, 7),
 }  # fmt: skip
+
+
+Limits = Sequence[tuple[float, float]]
+"""Speed limits along a path: from where in m, and in km/h; none: there are no signs."""
+
+
+def in_town(limits: Limits, s_m: Array) -> NDArray[np.bool_]:
+    """Return for each place along the path whether houses stand there: where the limit is that of a town, or none."""
+    if not limits:
+        return np.ones(len(s_m), dtype=bool)
+    starts, kmh = np.array(limits).T
+    return np.asarray(kmh[np.maximum(np.searchsorted(starts, s_m, side="right") - 1, 0)] <= TOWN_KMH)
 
 
 class Surroundings(NamedTuple):
@@ -46,8 +67,8 @@ class Surroundings(NamedTuple):
 NO_SURROUNDINGS: Final = Surroundings(joined([]), joined([]), joined([]))
 
 
-def surroundings(path: Array, limit_kmh: float, taken: Occupancy, ground: HeightField | None = None) -> Surroundings:
-    """Return houses, trees and signs along a path [N, 2], on ground that is free; takes it. Limit 0: no signs.
+def surroundings(path: Array, limits: Limits, taken: Occupancy, ground: HeightField | None = None) -> Surroundings:
+    """Return houses, trees and signs along a path [N, 2], on ground that is free; takes it.
 
     Houses stand upright on the ground's height; what is slender is made for level ground.
     """
@@ -55,12 +76,34 @@ def surroundings(path: Array, limit_kmh: float, taken: Occupancy, ground: Height
     across = left_of(path)
     way = np.concatenate(((0.0,), np.cumsum(np.hypot(*np.diff(path, axis=0).T))))
 
-    def places(first_m: float, every_m: float) -> list[tuple[Array, Array]]:
-        return [_place(path, across, way, s) for s in np.arange(first_m, way[-1], every_m).tolist()]
+    def sign(at_m: float, limit_kmh: float) -> Vertices:
+        spots = [_place(path, across, way, min(at_m + later, way[-1])) for later in SIGN_LATER_M]
+        made = (_sign(*spot, aside_m, limit_kmh, taken) for aside_m in SIGN_ASIDES_M for spot in spots)
+        return next((one for one in made if len(one)), joined([]))
 
-    signs = [_sign(*place, limit_kmh, taken) for place in (places(30.0, SIGN_EVERY_M) if limit_kmh > 0.0 else ())]
-    houses = [_house(*place, side, taken, generator) for place in places(10.0, HOUSE_EVERY_M) for side in SIDES_M]
-    trees = [_tree(*place, side, taken, generator) for place in places(4.0, TREE_EVERY_M) for side in SIDES_M]
+    ends = [*(start for start, _ in limits[1:]), way[-1]][: len(limits)]
+    signs = [
+        sign(at_m, kmh)
+        for (start, kmh), end in zip(limits, ends, strict=True)
+        for at_m in np.arange(max(start, FIRST_SIGN_M), end, SIGN_EVERY_M).tolist()
+    ]
+
+    def places_of(first_m: float, every_m: float) -> Iterator[tuple[Array, Array, bool]]:
+        at = np.arange(first_m, way[-1], every_m)
+        for s_m, is_town in zip(at.tolist(), in_town(limits, at).tolist(), strict=True):
+            yield *_place(path, across, way, s_m), is_town
+
+    houses = [
+        _house(point, left, side, taken, generator)
+        for point, left, is_town in places_of(10.0, HOUSE_EVERY_M)
+        for side in SIDES_M
+        if is_town
+    ]
+    trees = [
+        _tree(point, left, side, 0.0 if is_town else COUNTRY_TREE_M, taken, generator)
+        for point, left, is_town in places_of(4.0, TREE_EVERY_M)
+        for side in SIDES_M
+    ]
     return Surroundings(joined(signs), joined([stood(house, ground) for house in houses]), joined(trees))
 
 
@@ -108,8 +151,10 @@ def _gable(place: Box, colour: Colour) -> Vertices:
     return joined([quads(slopes, colour), facets(ends, colour)])
 
 
-def _tree(point: Array, left: Array, side: float, taken: Occupancy, generator: np.random.Generator) -> Vertices:
-    height, aside = generator.uniform(4.5, 8.5), generator.uniform(0.0, 6.0)
+def _tree(
+    point: Array, left: Array, side: float, further_m: float, taken: Occupancy, generator: np.random.Generator
+) -> Vertices:
+    height, aside = generator.uniform(4.5, 8.5), further_m + generator.uniform(0.0, 6.0)
     crown = CROWNS[int(generator.integers(len(CROWNS)))]
     road = 3.5 if side < 0.0 else 7.0
     x, y = (point + side * (road + 2.2 + aside) * left).tolist()
@@ -121,9 +166,9 @@ def _tree(point: Array, left: Array, side: float, taken: Occupancy, generator: n
     return joined([trunk, low, high])
 
 
-def _sign(point: Array, left: Array, limit_kmh: float, taken: Occupancy) -> Vertices:
-    """Return a speed limit's sign on the right of the lane, facing those who come along the path."""
-    foot = np.append(point - SIGN_ASIDE_M * left, 0.0)
+def _sign(point: Array, left: Array, aside_m: float, limit_kmh: float, taken: Occupancy) -> Vertices:
+    """Return a speed limit's sign on the right of the path, facing those who come along it; nothing on taken ground."""
+    foot = np.append(point - aside_m * left, 0.0)
     if not taken.take_disc(float(foot[0]), float(foot[1]), SIGN_RADIUS_M):
         return joined([])
     ahead, right, up = np.array((left[1], -left[0], 0.0)), np.append(-left, 0.0), np.array((0.0, 0.0, 1.0))

@@ -7,9 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simconsole.hud.driver_view.mesh import (
+    Box,
     Colour,
     Material,
     Vertices,
+    box,
+    cone,
     encoded,
     facets,
     joined,
@@ -28,12 +31,16 @@ ALLOY: Final[Colour] = (150, 152, 156)
 TRIM: Final[Colour] = (34, 35, 38)
 LEATHER: Final[Colour] = (26, 26, 28)
 HEADLAMP: Final[Colour] = (250, 246, 224)
-TAIL_LAMP: Final[Colour] = (120, 10, 12)
+TAIL_LAMP: Final[Colour] = (156, 12, 14)
 BRAKE_LAMP: Final[Colour] = (255, 40, 32)
 INDICATOR: Final[Colour] = (255, 160, 20)
 BALL: Final[Colour] = (214, 126, 44)
 HAND_WHEEL_RADIUS_M: Final = 0.185
 WHEEL_RADIUS_M: Final = 0.31
+ROBOT_WHEEL_RADIUS_M: Final = 0.033  # of both TurtleBot3
+CAR_LENGTH_M: Final = 4.0
+SEAT_M: Final = 1.0
+"""Height from which a person can sit in a vehicle."""
 
 
 class Size(NamedTuple):
@@ -51,6 +58,16 @@ class Size(NamedTuple):
         return self.length_m == self.width_m == self.height_m
 
     @property
+    def scale(self) -> float:
+        """Size against a car: how much nearer the camera of a small robot stands."""
+        return min(1.0, max(0.1, self.length_m / CAR_LENGTH_M))
+
+    @property
+    def has_seat(self) -> bool:
+        """Whether a person sees the road from inside of it."""
+        return self.height_m >= SEAT_M and not self.is_ball
+
+    @property
     def front_m(self) -> float:
         """From base_link to the front end."""
         return self.length_m - self.rear_overhang_m
@@ -66,7 +83,7 @@ class VehicleMeshes(NamedTuple):
 
     body: Vertices
     wheel: Vertices
-    wheel_places: tuple[tuple[float, float], ...]  # (x, y) in m; the first two are steered
+    wheel_places: tuple[tuple[float, float], ...]  # (x, y) in m; of four the first two are steered
     brake_lamps: Vertices
     left_indicators: Vertices
     right_indicators: Vertices
@@ -74,17 +91,37 @@ class VehicleMeshes(NamedTuple):
     hand_wheel: Vertices  # about the hub, in the plane of y and z
     hand_wheel_place: tuple[float, float, float]
     hand_wheel_tilt_rad: float
+    wheel_radius_m: float = WHEEL_RADIUS_M
+
+    def steers(self, wheel: int) -> bool:
+        """Return whether the wheel at this of `wheel_places` turns with the steering."""
+        return len(self.wheel_places) > 2 and wheel < 2
 
 
 def vehicle_meshes(size: Size) -> VehicleMeshes:
-    """Return a car of this size, or a ball."""
-    nothing = joined([])
+    """Return a car of this size, a ball, or a robot on two wheels."""
     if size.is_ball:
-        return VehicleMeshes(
-            body=_ball(0.5 * size.height_m), wheel=nothing, wheel_places=(), brake_lamps=nothing,
-            left_indicators=nothing, right_indicators=nothing, bonnet=nothing, hand_wheel=nothing,
-            hand_wheel_place=(0.0, 0.0, 0.0), hand_wheel_tilt_rad=0.0,
-        )  # fmt: skip
+        return _seatless(_ball(0.5 * size.height_m))
+    if not size.has_seat:
+        half_axle = 0.5 * size.wheelbase_m  # of a robot: between its two wheels
+        tyre = wheel(0.0, 0.0, ROBOT_WHEEL_RADIUS_M, 0.018, RUBBER, ALLOY)
+        return _seatless(_robot(size))._replace(
+            wheel=tyre, wheel_places=((0.0, half_axle), (0.0, -half_axle)), wheel_radius_m=ROBOT_WHEEL_RADIUS_M
+        )
+    return _car(size)
+
+
+def _seatless(body: Vertices) -> VehicleMeshes:
+    """Return what has a body and nothing else."""
+    nothing = joined([])
+    return VehicleMeshes(
+        body=body, wheel=nothing, wheel_places=(), brake_lamps=nothing, left_indicators=nothing,
+        right_indicators=nothing, bonnet=nothing, hand_wheel=nothing, hand_wheel_place=(0.0, 0.0, 0.0),
+        hand_wheel_tilt_rad=0.0,
+    )  # fmt: skip
+
+
+def _car(size: Size) -> VehicleMeshes:
     half = 0.5 * size.width_m
     track = half - 0.12
     eye = size.eye_m
@@ -100,6 +137,39 @@ def vehicle_meshes(size: Size) -> VehicleMeshes:
         hand_wheel_place=(eye[0] + 0.52, eye[1], eye[2] - 0.37),
         hand_wheel_tilt_rad=math.radians(24.0),
     )
+
+
+def _robot(size: Size) -> Vertices:
+    """Return decks on posts, a scanner on the top one, and a coloured edge in front."""
+    middle = size.front_m - 0.5 * size.length_m
+    half_length, half_width, high = 0.5 * size.length_m, 0.5 * size.wheelbase_m - 0.012, size.height_m
+    deck_m, foot = 0.04 * high, 0.08 * high
+
+    def deck(z_m: float) -> Vertices:
+        return box(
+            Box(
+                x_m=middle, y_m=0.0, z_m=z_m, half_length_m=half_length, half_width_m=half_width, height_m=deck_m,
+            ),
+            TRIM,
+        )  # fmt: skip
+
+    top = 0.76 * high
+    posts = [
+        cone(middle + along * 0.8 * half_length, side * 0.8 * half_width, (foot, top), (0.005, 0.005), ALLOY)
+        for along in (-1.0, 1.0)
+        for side in (-1.0, 1.0)
+    ]
+    computer = Box(
+        x_m=middle, y_m=0.0, z_m=foot + deck_m, half_length_m=0.7 * half_length, half_width_m=0.7 * half_width,
+        height_m=0.25 * high,
+    )  # fmt: skip
+    edge = Box(
+        x_m=size.front_m, y_m=0.0, z_m=top, half_length_m=0.004, half_width_m=half_width, height_m=deck_m,
+    )  # fmt: skip
+    scanner_m = 0.3 * min(half_length, half_width) + 0.015
+    scanner = cone(middle, 0.0, (top + deck_m, high), (scanner_m, scanner_m), LEATHER)
+    decks = [deck(foot), deck(0.45 * high), deck(top)]
+    return joined([*decks, *posts, box(computer, PAINT), box(edge, INDICATOR), scanner])
 
 
 def _outside(size: Size) -> Vertices:

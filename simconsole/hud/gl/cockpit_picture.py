@@ -3,16 +3,16 @@
 from typing import TYPE_CHECKING, Final
 
 from simconsole.hud.aids import NO_AIDS, Aids, aid_panels
-from simconsole.hud.draw import DrawItem
+from simconsole.hud.draw import Box, DrawItem
 from simconsole.hud.driver_view.camera import Viewport
 from simconsole.hud.driver_view.light import DAY, NIGHT
 from simconsole.hud.driver_view.motion import ShownVehicle
 from simconsole.hud.driver_view.scene import ViewScene
-from simconsole.hud.driver_view.views import looks
+from simconsole.hud.driver_view.views import RoadParts, looks
 from simconsole.hud.gl.context import is_software
 from simconsole.hud.gl.overlay import Overlay
 from simconsole.hud.gl.renderer import Quality, Renderer
-from simconsole.hud.layout import layout, panels_over_view
+from simconsole.hud.layout import layout, message_place, panels_over_view
 from simconsole.hud.screen import Fitted
 from simconsole.hud.view import HudView
 from simconsole.hud.window.raster import Painter
@@ -80,9 +80,8 @@ class CockpitPicture:
         fitted, screen = self._fitted, self._fitted.screen
         width, height, left, top = fitted.window_width_px, fitted.window_height_px, fitted.left_px, fitted.top_px
         boxes = panels_over_view(view, screen)
-        road_px = boxes[-1].y  # down to where the instruments begin
-        window = Viewport(left / width, 1.0 - (top + road_px) / height, screen.width_px / width, road_px / height)
-        pictures = looks(self._profile, shown, self._scene.size, window, width, height)
+        parts = road_parts(fitted, boxes[-1].y)
+        pictures = looks(self._profile, shown, self._scene.size, parts, width, height)
         scene_target = target if self._smooth is None else self._smooth
         if fitted.has_bars:
             scene_target.clear()
@@ -97,6 +96,29 @@ class CockpitPicture:
             self._drawn = items
         hiding = (*boxes, *(panel.box for panel in panels))
         self._overlay.draw(target, [box._replace(x=box.x + left, y=box.y + top) for box in hiding])
+
+
+def road_parts(fitted: Fitted, road_px: float) -> RoadParts:
+    """Return which parts of a window show the road.
+
+    Args:
+        fitted: The screen, and how large the window is.
+        road_px: Height of the road over the instruments.
+    """
+    screen, line_px = fitted.screen, fitted.top_px + road_px
+
+    def part(box: Box) -> Viewport:
+        """Return the part of a box above the instruments; all of it where it stands lower."""
+        bottom = min(box.bottom, line_px) if line_px > box.y else box.bottom
+        width, height = fitted.window_width_px, fitted.window_height_px
+        return Viewport(box.x / width, 1.0 - bottom / height, box.w / width, (bottom - box.y) / height)
+
+    own = part(Box(fitted.left_px, fitted.top_px, screen.width_px, screen.height_px))
+    return RoadParts(
+        displays={None: own, fitted.display: own, **{number: part(box) for number, box in fitted.others}},
+        front=part(fitted.front()),
+        below_messages=1.0 - message_place(screen).bottom / road_px,
+    )
 
 
 def _cheap(profile: DriverViewProfile) -> DriverViewProfile:

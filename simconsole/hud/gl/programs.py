@@ -40,7 +40,7 @@ uniform vec3 fog;
 uniform float fog_per_m;
 uniform float night;
 uniform vec3 lamp_place;
-uniform vec2 lamp_heading;
+uniform mat3 lamp_axes;  // of the vehicle: ahead, left, up
 #ifdef SHADOWS
 uniform sampler2DShadow shadow_map;
 in vec3 shadow_place;
@@ -81,11 +81,10 @@ void main() {
 #endif
     vec3 light = sky_light * (0.72 + 0.28 * normal.z) + sun_light * facing;
     if (night > 0.0) {
-        vec3 from = place - lamp_place;
-        float ahead = dot(from.xy, lamp_heading);
-        float beside = dot(from.xy, vec2(-lamp_heading.y, lamp_heading.x));
+        vec3 from = (place - lamp_place) * lamp_axes;
+        float ahead = from.x;
         float reach = max(ahead, 0.5);
-        float cone = smoothstep(0.55, 0.18, abs(beside) / reach) * smoothstep(0.12, -0.02, from.z / reach);
+        float cone = smoothstep(0.55, 0.18, abs(from.y) / reach) * smoothstep(0.12, -0.02, from.z / reach);
         light += night * step(0.0, ahead) * cone * vec3(1.25, 1.18, 1.0) * 900.0 / (900.0 + ahead * ahead);
     }
     vec3 lit = material == 2 ? base : mix(base * light, vec3(1.0, 0.78, 0.42) * 0.5, glow);

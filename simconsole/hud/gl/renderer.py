@@ -11,9 +11,8 @@ from simconsole.hud.driver_view.light import Light, reach_m, shadow_matrix
 from simconsole.hud.driver_view.mesh import Vertices
 from simconsole.hud.driver_view.motion import ShownVehicle
 from simconsole.hud.driver_view.other_people import person, person_model
-from simconsole.hud.driver_view.other_vehicles import meshes, model
+from simconsole.hud.driver_view.other_vehicles import bodies, meshes, model, paint_of
 from simconsole.hud.driver_view.scene import Pieces, ViewScene, in_sight, lit_lamps
-from simconsole.hud.driver_view.vehicle_body import WHEEL_RADIUS_M
 from simconsole.hud.driver_view.views import Look
 from simconsole.hud.gl.programs import (
     SHADOW_FRAGMENT,
@@ -25,7 +24,7 @@ from simconsole.hud.gl.programs import (
     variant,
 )
 from simconsole.world.rules.lamps import Lamps
-from simconsole.world.traffic.road_users import RoadUserKind
+from simconsole.world.traffic.road_users import RoadUser, RoadUserKind
 
 if TYPE_CHECKING:
     import moderngl
@@ -39,8 +38,12 @@ LAYER_SLOPE: Final = 1.0
 LAYER_STEPS: Final = 8.0
 FRAME: Final = 0.004  # of the window's width
 FRAME_COLOUR: Final = (0.07, 0.07, 0.08)
+NIGHT_FRAME_COLOUR: Final = (0.26, 0.26, 0.28)
+"""A dark rim would not be told from the night around it."""
 WHEELS_M: Final = 80.0
 """Nobody sees the wheels of other vehicles that are further away."""
+LAMPS_M: Final = 400.0
+"""A lamp of a traffic light further away than this is less than a third of a pixel."""
 BLINK_S: Final = 0.67
 """Period of the indicators (UN R48: 60 to 120 a minute)."""
 
@@ -98,13 +101,15 @@ class Renderer:
         self._brake_lamps = self._put(vehicle.brake_lamps)
         self._indicators = (self._put(vehicle.left_indicators), self._put(vehicle.right_indicators))
         self._lamps = Lamps(scene.lights)
+        self._lights = np.array([light[:3] for light in scene.lights]).reshape(-1, 3)
         self._lit_lamps = tuple(self._put(lamp) for lamp in lit_lamps())
         other = meshes()
-        self._other_body, self._other_wheel, self._other_wheels = (
-            self._put(other.body),
+        self._other_bodies, self._other_wheel, self._other_wheels = (
+            [self._put(body) for body in bodies()],
             self._put(other.wheel),
             other.wheel_places,
         )
+        self._other_indicators = (self._put(other.left_indicators), self._put(other.right_indicators))
         self._person = self._put(person())
         self._map: moderngl.Framebuffer | None = None
         if quality.shadows:
@@ -128,7 +133,7 @@ class Renderer:
         for look in looks:
             place = look.viewport.pixels(width, height)
             if look.is_mirror:
-                _frame(target, place)
+                _frame(target, place, NIGHT_FRAME_COLOUR if self._light.night else FRAME_COLOUR)
             target.viewport = target.scissor = place
             target.clear(depth=1.0)
             self._draw_look(look, shown, pose)
@@ -138,7 +143,7 @@ class Renderer:
         context, camera, light = self._context, look.camera, self._light
         projection = look.lens.projection()
         view_projection = projection @ camera.view(np.zeros(3))
-        self._set_light(camera, shown, pose)
+        self._set_light(camera, pose)
         _set(self._surface, "view_projection", _bytes(view_projection))
         self._set_model(np.eye(4))
         reach = reach_m(light)
@@ -148,7 +153,7 @@ class Renderer:
             self._draw_runs(layer, part, view_projection, reach, camera)
         context.polygon_offset = (0.0, 0.0)
         self._draw_runs(self._solids, self._scene.solids, view_projection, reach, camera)
-        self._draw_lamps(shown, camera, reach)
+        self._draw_lamps(shown, camera)
         self._draw_others(shown, camera, reach)
         if look.from_seat:
             if look.shows_vehicle and not look.is_mirror:
@@ -170,25 +175,35 @@ class Renderer:
 
     def _draw_outside(self, shown: ShownVehicle, pose: Array) -> None:
         self._draw_mesh(self._body, pose)
-        roll = shown.distance_m / WHEEL_RADIUS_M
-        for index, (x, y) in enumerate(self._scene.vehicle.wheel_places):
-            steer = shown.road_wheel_rad if index < 2 else 0.0
-            up = np.array((0.0, 0.0, WHEEL_RADIUS_M))
+        vehicle = self._scene.vehicle
+        up = np.array((0.0, 0.0, vehicle.wheel_radius_m))
+        roll = shown.distance_m / vehicle.wheel_radius_m
+        for index, (x, y) in enumerate(vehicle.wheel_places):
+            steer = shown.road_wheel_rad if vehicle.steers(index) else 0.0
             hub = _transform(rotation(steer, math.remainder(roll, math.tau)), np.array((x, y, 0.0)) + up)
             self._draw_mesh(self._wheel, pose @ hub @ _transform(np.eye(3), -up))
         if shown.brake > 0.0:
             self._draw_mesh(self._brake_lamps, pose)
-        if shown.t_s % BLINK_S < 0.5 * BLINK_S:
-            for lamps, side in zip(self._indicators, (1.0, -1.0), strict=True):
-                if shown.hazard_lights > 0.0 or shown.turn_indicators == side:
-                    self._draw_mesh(lamps, pose)
+        for side in (1.0, -1.0) if shown.hazard_lights > 0.0 else (shown.turn_indicators,):
+            self._draw_indicators(self._indicators, shown, side, pose)
 
-    def _draw_lamps(self, shown: ShownVehicle, camera: Camera, reach: float) -> None:
-        """Draw the lamps that shine over those that are there unlit."""
+    def _draw_indicators(self, lamps: tuple[_Drawn, _Drawn], shown: ShownVehicle, side: float, pose: Array) -> None:
+        """Draw the indicators of one side, 1 left or -1 right, of a vehicle while they are lit."""
+        if side and shown.t_s % BLINK_S < 0.5 * BLINK_S:
+            self._draw_mesh(lamps[0 if side > 0.0 else 1], pose)
+
+    def _draw_lamps(self, shown: ShownVehicle, camera: Camera) -> None:
+        """Draw the lamps that shine and face the camera over those that are there unlit."""
+        away = self._lights[:, :2] - camera.eye[:2]
+        yaw = self._lights[:, 2]
+        seen = (away @ camera.axes[:2, 0] > 0.0) & (np.hypot(*away.T) < LAMPS_M)
+        seen &= away[:, 0] * np.cos(yaw) + away[:, 1] * np.sin(yaw) > 0.0
+        if not seen.any():
+            return
         for place, lamp in self._lamps.lit(shown.tick, shown.tick_hz):
-            light = self._scene.lights[place]
-            if math.hypot(light.x_m - camera.eye[0], light.y_m - camera.eye[1]) < reach:
-                at = np.array((light.x_m, light.y_m, 0.0))
+            if seen[place]:
+                light = self._scene.lights[place]
+                at = np.array((light.x_m, light.y_m, self._scene.height_m(light.x_m, light.y_m)))
                 self._draw_mesh(self._lit_lamps[lamp], _transform(rotation(light.yaw_rad), at))
 
     def _draw_others(self, shown: ShownVehicle, camera: Camera, reach: float) -> None:
@@ -196,14 +211,20 @@ class Renderer:
             away = math.hypot(user.x_m - camera.eye[0], user.y_m - camera.eye[1])
             if away > reach:
                 continue
-            if user.kind == RoadUserKind.PEDESTRIAN:
-                self._draw_mesh(self._person, person_model(user))
+            body, place = self._other(user)
+            self._draw_mesh(body, place)
+            if body is self._person:
                 continue
-            place = model(user)
-            place[2, 3] += self._scene.height_m(user.x_m, user.y_m)
-            self._draw_mesh(self._other_body, place)
+            self._draw_indicators(self._other_indicators, shown, user.turn_indicators, place)
             for x, y in self._other_wheels if away < WHEELS_M else ():
                 self._draw_mesh(self._other_wheel, place @ _transform(np.eye(3), np.array((x, y, 0.0))))
+
+    def _other(self, user: RoadUser) -> tuple[_Drawn, Array]:
+        """Return the mesh that stands for a road user, and where it stands."""
+        on_foot = user.kind == RoadUserKind.PEDESTRIAN
+        place = person_model(user) if on_foot else model(user)
+        place[2, 3] += self._scene.height_m(user.x_m, user.y_m)
+        return self._person if on_foot else self._other_bodies[paint_of(user)], place
 
     def _draw_mesh(self, mesh: _Drawn, model: Array) -> None:
         if mesh.length:
@@ -218,29 +239,33 @@ class Renderer:
 
     def _draw_shadows(self, shown: ShownVehicle, pose: Array) -> None:
         assert self._map is not None
-        centre = pose @ np.array((SHADOW_AHEAD_M, 0.0, 0.0, 1.0))
-        matrix = shadow_matrix(self._light, centre[:3], SHADOW_HALF_M)
+        scale = self._scene.size.scale  # a robot's map covers less, so that the robot is more than a spot in it
+        half_m = scale * SHADOW_HALF_M
+        centre = pose @ np.array((scale * SHADOW_AHEAD_M, 0.0, 0.0, 1.0))
+        matrix = shadow_matrix(self._light, centre[:3], half_m)
         self._map.use()
         self._map.clear(depth=1.0)
         _set(self._shadow, "to_shadow", _bytes(matrix))
         _set(self._shadow, "model", _bytes(np.eye(4)))
         part = self._scene.solids
-        near = np.linalg.norm(part.centre - centre[:3], axis=1) - part.radius < 2.0 * SHADOW_HALF_M
+        near = np.linalg.norm(part.centre - centre[:3], axis=1) - part.radius < 2.0 * half_m
         if self._solids.shadow is not None:
             for index in np.flatnonzero(near).tolist():
                 self._solids.shadow.render(vertices=int(part.length[index]), first=int(part.first[index]))
-        if self._body.shadow is not None:
-            _set(self._shadow, "model", _bytes(pose))
-            self._body.shadow.render(vertices=self._body.length)
+        near_users = [u for u in shown.others if math.hypot(u.x_m - centre[0], u.y_m - centre[1]) < 2.0 * half_m]
+        for mesh, place in ((self._body, pose), *(self._other(user) for user in near_users)):
+            if mesh.shadow is not None:
+                _set(self._shadow, "model", _bytes(place))
+                mesh.shadow.render(vertices=mesh.length)
         _set(self._surface, "to_shadow", _bytes(matrix))
         self._depth.use(0)
 
-    def _set_light(self, camera: Camera, shown: ShownVehicle, pose: Array) -> None:
+    def _set_light(self, camera: Camera, pose: Array) -> None:
         _set(self._surface, "eye", tuple(camera.eye.tolist()))
         if self._light.night > 0.0:
             place = (pose @ np.array((self._scene.size.front_m, 0.0, 0.62, 1.0)))[:3]
             _set(self._surface, "lamp_place", tuple(place.tolist()))
-            _set(self._surface, "lamp_heading", (math.cos(shown.yaw_rad), math.sin(shown.yaw_rad)))
+            _set(self._surface, "lamp_axes", _bytes(pose[:3, :3]))
 
     def _set_model(self, model: Array) -> None:
         _set(self._surface, "model", _bytes(model))
@@ -260,14 +285,16 @@ class Renderer:
         return _Drawn(surface, shadow, len(mesh))
 
 
-def _frame(target: "moderngl.Framebuffer", place: tuple[int, int, int, int]) -> None:
-    """Paint what a mirror stands in: a dark rim around its place."""
+def _frame(
+    target: "moderngl.Framebuffer", place: tuple[int, int, int, int], colour: tuple[float, float, float]
+) -> None:
+    """Paint what a mirror stands in: a rim around its place."""
     left, bottom, width, height = place
     rim = max(2, round(FRAME * target.width))
     right, top = min(target.width, left + width + rim), min(target.height, bottom + height + rim)
     left, bottom = max(0, left - rim), max(0, bottom - rim)
     target.scissor = (left, bottom, right - left, top - bottom)
-    target.clear(*FRAME_COLOUR)
+    target.clear(*colour)
 
 
 def _pose(shown: ShownVehicle) -> Array:

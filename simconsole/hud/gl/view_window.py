@@ -13,9 +13,10 @@ from simconsole.hud.driver_view.scene import ViewScene
 from simconsole.hud.gl.cockpit_picture import CockpitPicture
 from simconsole.hud.gl.context import context_of_window, renderer_name
 from simconsole.hud.layout import check_screen
-from simconsole.hud.screen import fit, screen_of
+from simconsole.hud.screen import Fitted, fit, fit_span, screen_of
 from simconsole.hud.view import HudSettings
 from simconsole.hud.window.display_memory import DisplayMemory
+from simconsole.hud.window.displays import Span, display_places, named_displays, span_of
 from simconsole.hud.window.habits import Habits, habits_of
 from simconsole.hud.window.ports import DriverWindow, Motion
 from simconsole.hud.window.pygame_window import Window, dress_window, placed
@@ -46,7 +47,7 @@ class ViewWindow:
         """
         self._memory = DisplayMemory(settings)
         self._whole = screen_of(profile)
-        check_screen(self._whole, "hud")
+        check_screen(self._whole, "hud", settings)
         if sys.platform == "linux" and not any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY")):
             os.environ.setdefault("SDL_VIDEODRIVER", "offscreen")
         import pygame
@@ -54,12 +55,17 @@ class ViewWindow:
         try:
             pygame.display.quit()  # one that this process opened before, for joysticks, may be of a kind without OpenGL
             pygame.display.init()
-            self._context = _open(profile, habits or habits_of(profile))
+            self._habits = habits or habits_of(profile)
+            self._span = _span(view, self._habits)
+            self._context = _open(profile, self._habits, self._span)
+        except WorkerError:
+            pygame.display.quit()
+            raise
         except Exception as problem:  # noqa: BLE001 SDL's and moderngl's own, and glcontext's bare Exception
             pygame.display.quit()
             raise WorkerError(f"driver's view: no OpenGL window can be opened: {problem}") from None
         self._target = self._context.screen
-        fitted = fit(self._whole, *pygame.display.get_window_size())
+        fitted = self._fitted(*pygame.display.get_window_size())
         self._picture = CockpitPicture(self._context, scene, view, fitted, settings.hand_wheel_per_road_wheel)
         self.drawer = renderer_name(self._context)
         if self._picture.is_cheap:
@@ -82,7 +88,8 @@ class ViewWindow:
         if motion is not None:
             self._shown = moved(motion.older, motion.newer, motion.age_s)
             if motion.road_users is not None:
-                others = at_moment(motion.road_users, self._shown.t_s, motion.newer.tick_hz)
+                now_s, tick_hz = self._shown.t_s, motion.newer.tick_hz
+                others = at_moment(motion.road_users, now_s, tick_hz, motion.road_users_before)
                 self._shown = self._shown._replace(others=others)
         elif snapshot is not None:
             self._shown = shown_vehicle(snapshot)
@@ -94,7 +101,13 @@ class ViewWindow:
         self._target.use()
         self._target.viewport = self._target.scissor = (0, 0, width_px, height_px)
         self._target = context_of_window().screen  # moderngl measures a window by its scissor, once for each context
-        self._picture.resize(fit(self._whole, width_px, height_px))
+        self._picture.resize(self._fitted(width_px, height_px))
+
+    def _fitted(self, width_px: int, height_px: int) -> Fitted:
+        if self._span is None:
+            return fit(self._whole, width_px, height_px)._replace(display=self._habits.display)
+        spanning = fit_span(self._whole, self._span.displays, self._habits.display)
+        return spanning._replace(window_width_px=width_px, window_height_px=height_px)
 
     def close(self) -> None:
         """Close the window."""
@@ -104,7 +117,17 @@ class ViewWindow:
         pygame.display.quit()
 
 
-def _open(profile: HudProfile, habits: Habits) -> "moderngl.Context":
+def _span(view: DriverViewProfile, habits: Habits) -> Span | None:
+    """Return the window over all displays that the view names and the one with the instruments; None: it names none.
+
+    Raises:
+        WorkerError: one of them is not there.
+    """
+    named = named_displays(view) - {habits.display}
+    return span_of(display_places({*named, habits.display})) if named else None
+
+
+def _open(profile: HudProfile, habits: Habits, span: Span | None) -> "moderngl.Context":
     """Open an OpenGL window, in step with the display where that is wanted and can be had."""
     import pygame
 
@@ -115,7 +138,10 @@ def _open(profile: HudProfile, habits: Habits) -> "moderngl.Context":
         (pygame.GL_DEPTH_SIZE, 24),
     ):
         pygame.display.gl_set_attribute(name, value)
-    size, options = placed(profile, habits)
+    if span is None:
+        size, options = placed(profile, habits)
+    else:
+        size, options = (span.width_px, span.height_px), {"flags": pygame.NOFRAME, "display": habits.display}
     options["flags"] |= pygame.OPENGL | pygame.DOUBLEBUF
     try:
         pygame.display.set_mode(size, **options, vsync=int(habits.vsync))
@@ -123,7 +149,9 @@ def _open(profile: HudProfile, habits: Habits) -> "moderngl.Context":
         if not habits.vsync:
             raise
         pygame.display.set_mode(size, **options)
-    dress_window(fullscreen=habits.fullscreen)
+    if span is not None:
+        pygame.display.set_window_position((span.left_px, span.top_px))
+    dress_window(fullscreen=habits.fullscreen or span is not None)
     return context_of_window()
 
 

@@ -15,6 +15,7 @@ class Motion(NamedTuple):
     newer: Snapshot
     age_s: float
     road_users: RoadUsersAt | None = None  # of the newest step of traffic; None: there is none
+    road_users_before: RoadUsersAt | None = None  # of the step before
 
 
 class Ports(NamedTuple):

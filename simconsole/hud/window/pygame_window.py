@@ -34,7 +34,7 @@ class Window:
             WorkerError: no window can be opened here.
         """
         self._whole = screen_of(profile)
-        check_screen(self._whole, "hud")
+        check_screen(self._whole, "hud", settings)
         self._memory = DisplayMemory(settings)
         self._painter = Painter()
         self._drawn: list[DrawItem] = []
@@ -54,7 +54,7 @@ class Window:
         # Never shown. They load the fonts, which takes longer than a keyboard may be silent before it counts as lost.
         self._take_size()
         before: list[DrawItem] = []
-        for sample in sample_views():
+        for sample in sample_views(settings):
             after = layout(sample, self._screen)
             self._painter.repaint(self._surface, before, after)
             before = after

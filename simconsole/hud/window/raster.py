@@ -99,8 +99,10 @@ class Painter:
         height = round(large.get_height() / WORDS_SCALE)
         drawn = pygame.transform.smoothscale(large, (max(1, width), max(1, height)))
         shift = {"l": 0.0, "c": 0.5, "r": 1.0}[item.anchor] * width
-        # The line's top is one ascent above the baseline, and the baseline half a capital below the middle.
-        top = item.y + 0.5 * item.cap_px - font.get_ascent() / WORDS_SCALE
+        # The line's top is one ascent above the baseline, or the dots of a capital Ä, which are higher than that; the
+        # baseline is half a capital below the middle.
+        highest = max((metrics[3] for metrics in font.metrics(item.text) if metrics), default=0)
+        top = item.y + 0.5 * item.cap_px - max(font.get_ascent(), highest) / WORDS_SCALE
         return drawn, (round(item.x - shift), round(top))
 
 

@@ -69,7 +69,7 @@ class _Loop:
         self._keys, self._end = HeldKeys(), Key(0)
         self._tapped, self._mask = Key(0), 0
         self._help = self._shows_times = False
-        self._times, self._freshness = FrameTimes(self.window.drawer), Freshness()
+        self._times, self._freshness = FrameTimes(self.window.drawer, settings.language), Freshness()
         self._drawn_s = time.monotonic()
 
     def turn(self) -> None:

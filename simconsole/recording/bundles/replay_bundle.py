@@ -20,6 +20,7 @@ from simconsole.values.host import jit as compiling
 from simconsole.values.host.jit import compiled
 from simconsole.values.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE
 from simconsole.values.state_vector import TickInputs, input_vector
+from simconsole.world.obstacles.striking import strike
 from simconsole.world.rules.situation import look_around
 
 
@@ -44,7 +45,7 @@ def recorded_session(bundle: Bundle) -> ResolvedSession:
 
 def sources_sha256(console: Console) -> str:
     """Return what a log says of the sources that made its state vectors."""
-    sources = "".join(map(compiling.digest, (decide, console.platform.step, look_around)))
+    sources = "".join(map(compiling.digest, (decide, strike, console.platform.step, look_around)))
     return hashlib.sha256(sources.encode()).hexdigest()
 
 

@@ -29,7 +29,7 @@ from simconsole.values.state_vector import INPUT_WIDTH, LAYOUT, PLATFORM_AT, Sna
 from simconsole.values.units import tick_time_ns
 from simconsole.vehicle.turtlebot.robot_state import ROBOT
 from simconsole.world.rules.road_signals import RoadSignals
-from simconsole.world.traffic.road_users import NOBODY, RoadUsersAt
+from simconsole.world.traffic.road_users import NOBODY_AT_ALL
 from simconsole.world.world import NO_MAP, ShownMap
 
 OnTick = Callable[[int], None]
@@ -79,15 +79,14 @@ class DriveTopics:
         self._lockstep = session.mode.pacing == "lockstep"
         if self._lockstep:
             self._step_ticks = session.mode.control_period_ticks
-            odometry_hz = session.mode.tick_hz / self._step_ticks
-            profile = msgspec.structs.replace(profile, rates_hz={**profile.rates_hz, ODOMETRY: odometry_hz})
+            profile = msgspec.structs.replace(profile, rates_hz={**profile.rates_hz, ODOMETRY: session.mode.control_hz})
         self._outputs = Outputs(self.registry, profile, route=route, signals=signals, shown_map=shown, robot=robot)
         self._robot = robot
         outputs = (*view_topics(self.registry, profile), *self._outputs.topics())
         if profile.camera is not None:
             outputs = (*outputs, *CameraTopics(self.registry, profile.camera, lambda: None).topics())
         commands = CommandDecoder(BridgeInputs(), profile, is_robot=robot is not None).topics()
-        self._road_users = RoadUsersAt(0, NOBODY)
+        self._road_users = NOBODY_AT_ALL
         if session.environment.traffic is not None:
             outputs = (*RoadUserTopics(self.registry, lambda: self._road_users).topics(), *outputs)
         self.names = topic_names(profile, [*(topic.name for topic in outputs), *(topic.name for topic in commands)])

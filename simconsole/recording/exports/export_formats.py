@@ -15,6 +15,7 @@ from simconsole.profiles.world import WorldProfile
 from simconsole.recording.exports.column_table import ColumnTable, TableChoice
 from simconsole.recording.exports.drive_topics import DriveTopics, OnTick
 from simconsole.recording.exports.foxglove import foxglove_layout
+from simconsole.recording.own_signals import with_own_signals
 from simconsole.recording.reading import Recording
 from simconsole.values.errors import RecordingError
 from simconsole.world.kinds.worlds import road_signals, route_points, shown_map
@@ -84,7 +85,9 @@ def export_drive(
             if topics is not None:
                 counts = module.write_topics(topics.registry, topics.messages(recording, on_tick), draft)
             else:
-                counts = module.write_table(ColumnTable(recording, choice or TableChoice()), draft, on_tick)
+                counts = module.write_table(
+                    ColumnTable(with_own_signals(recording), choice or TableChoice()), draft, on_tick
+                )
             if layout_path is not None and topics is not None:
                 layout_path.write_bytes(foxglove_layout(topics.names))
             shutil.move(draft, path)

@@ -13,6 +13,7 @@ import msgspec
 
 from simconsole.bridge.console.command_decoder import BALL_SPEED, REQUEST
 from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.bridge.console.plan_input import PLAN
 from simconsole.bridge.protocol.access import Role
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.recording.imports.bag import Bag, BagMessage, BagTopic
@@ -67,8 +68,12 @@ class BagCommands:
         limits = msgspec.structs.replace(profile.limits, commands_hz=commands_hz)
         self._console = ConsoleBridge(msgspec.structs.replace(profile, limits=limits))
         router = self._console.router
-        command_types = {name: topic.type for name, topic in router.topics.items() if topic.command is not None}
         names = {here: standard for standard, here in self._console.names.items()}
+        command_types = {
+            name: topic.type
+            for name, topic in router.topics.items()
+            if topic.command is not None and names[name] != PLAN  # which commands nothing
+        }
         standard = {names[name]: name for name in command_types}
         bag = Bag(choice.path, tuple(command_types.values()))
         self._topics = played_topics(bag, choice.topic, command_types, standard)

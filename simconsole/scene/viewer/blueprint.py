@@ -4,37 +4,73 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from simconsole.profiles.view import SceneProfile
 from simconsole.scene.entities import Array, on_map
-from simconsole.scene.timeline import PLOTS
+from simconsole.scene.lanes import CONTROLS, HEALTH, WHO_DRIVES
+from simconsole.scene.plots import PLOTS, Plot
+from simconsole.scene.viewer.standing import MAP
 
 if TYPE_CHECKING:
     import rerun.blueprint as rrb
 
+    from simconsole.scene.viewer.job import Job
+
 TIMELINE: Final = "sim_time"
-MAP: Final = "map"
-"""Root of the flat copies: a picture's y axis points down, the map's up, so they have coordinates of their own."""
+LOG: Final = "log"
+LATENCY: Final = "latency"
+CAMERA: Final = "camera"
 AHEAD_M: Final = 14.0
 DARK: Final = (13, 17, 23)
 SKY: Final = (38, 48, 60)
 
 
-def blueprint(profile: SceneProfile, scale: float, path: Array | None) -> rrb.Blueprint:
-    """Return the operators' screen.
+def blueprint(job: Job, path: Array | None, is_live: bool = False) -> rrb.Blueprint:
+    """Return the operators' desk: who drives above all, then the vehicle, the map and the plots.
 
     Args:
-        profile: where the camera stands behind a car.
-        scale: size of the vehicle against a car's.
+        job: the vehicle, and where the camera stands behind it.
         path: [N, 2 or 3] m, what the map shows whole, if anything.
+        is_live: time goes on by itself.
     """
     import rerun.blueprint as rrb
 
-    so_far = rrb.VisibleTimeRanges(
+    # The height of three lanes and their time axis: none of them is clipped.
+    who = rrb.StateTimelineView(name="who drives", origin=f"/{WHO_DRIVES}")
+    health = rrb.StateTimelineView(name="health", origin=f"/{HEALTH}")
+    log = rrb.TextLogView(name="log", origin=f"/{LOG}")
+    controls = rrb.StateTimelineView(name="controls", origin=f"/{CONTROLS}")
+    latency = rrb.TextDocumentView(name="latency", origin=f"/{LATENCY}")
+    camera = rrb.Spatial2DView(name="camera", origin=f"/{CAMERA}")
+    beside = rrb.Tabs(log, controls, latency, active_tab="log")
+    left = rrb.Vertical(who, _chase(job), rrb.Horizontal(health, beside), row_shares=[2.0, 4.6, 3.4])
+    half = (len(PLOTS) + 1) // 2
+    lines = [_plot_view(plot) for plot in PLOTS]
+    columns = rrb.Horizontal(rrb.Vertical(*lines[:half]), rrb.Vertical(*lines[half:]))
+    above = rrb.Horizontal(_plan(path), camera) if job.has_camera else _plan(path)
+    right = rrb.Vertical(above, columns, row_shares=[3, 7])
+    return rrb.Blueprint(
+        rrb.Horizontal(left, right, column_shares=[9, 11]),
+        rrb.TimePanel(state="collapsed", timeline=TIMELINE, play_state="following" if is_live else None),
+        rrb.BlueprintPanel(state="collapsed"),
+        rrb.SelectionPanel(state="collapsed"),
+        auto_views=False,
+    )
+
+
+def _so_far() -> rrb.VisibleTimeRanges:
+    import rerun.blueprint as rrb
+
+    return rrb.VisibleTimeRanges(
         timeline=TIMELINE,
         start=rrb.TimeRangeBoundary.infinite(),
         end=rrb.TimeRangeBoundary.cursor_relative(),
     )
-    chase = rrb.Spatial3DView(
+
+
+def _chase(job: Job) -> rrb.Spatial3DView:
+    import rerun.blueprint as rrb
+
+    profile, scale = job.profile, job.dimensions.scale
+    return rrb.Spatial3DView(
         name="chase",
         origin="/world/ego",
         contents="/world/**",
@@ -46,34 +82,30 @@ def blueprint(profile: SceneProfile, scale: float, path: Array | None) -> rrb.Bl
             look_target=(scale * AHEAD_M, 0.0, 0.0),
             eye_up=(0, 0, 1),
         ),
-        overrides={"world/path/driven": so_far},
+        overrides={"world/path/driven": _so_far()},
     )
-    plan = rrb.Spatial2DView(
+
+
+def _plan(path: Array | None) -> rrb.Spatial2DView:
+    import rerun.blueprint as rrb
+
+    return rrb.Spatial2DView(
         name="map",
         origin=f"/{MAP}",
         background=DARK,
         visual_bounds=None if path is None else _bounds(on_map(path)),
-        overrides={f"{MAP}/path/driven": so_far},
+        overrides={f"{MAP}/path/driven": _so_far()},
     )
-    lanes = rrb.StateTimelineView(name="who drives", origin="/lanes")
-    log = rrb.TextLogView(name="log", origin="/log")
-    plots = [
-        rrb.TimeSeriesView(
-            name=plot.title,
-            origin=f"/{plot.path}",
-            axis_y=None if plot.low is None or plot.high is None else rrb.ScalarAxis(range=(plot.low, plot.high)),
-            plot_legend=rrb.PlotLegend(rrb.Corner2D.RightTop, visible=len(plot.series) > 1),
-        )
-        for plot in PLOTS
-    ]
-    left = rrb.Vertical(chase, lanes, log, row_shares=[5, 1.6, 1.6])
-    right = rrb.Vertical(plan, *plots, row_shares=[4, *[1.4] * len(plots)])
-    return rrb.Blueprint(
-        rrb.Horizontal(left, right, column_shares=[3, 2]),
-        rrb.TimePanel(state="collapsed", timeline=TIMELINE),
-        rrb.BlueprintPanel(state="collapsed"),
-        rrb.SelectionPanel(state="collapsed"),
-        auto_views=False,
+
+
+def _plot_view(plot: Plot) -> rrb.TimeSeriesView:
+    import rerun.blueprint as rrb
+
+    return rrb.TimeSeriesView(
+        name=plot.title,
+        origin=f"/{plot.path}",
+        axis_y=None if plot.low is None or plot.high is None else rrb.ScalarAxis(range=(plot.low, plot.high)),
+        plot_legend=rrb.PlotLegend(rrb.Corner2D.LeftTop, visible=len(plot.series) > 1),
     )
 
 

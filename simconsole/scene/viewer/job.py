@@ -1,17 +1,39 @@
-"""What a scene needs before the first state vector: course, car and columns; as one .npz file for a live drive."""
+"""What a scene needs before the first state vector: the world, the vehicle and the columns."""
 
-from pathlib import Path
-from typing import Any, NamedTuple
-from zipfile import BadZipFile
+from typing import NamedTuple
 
-import msgspec
-import numpy as np
+from msgspec import Struct
 
+from simconsole.profiles.vehicle import TurtlebotProfile
 from simconsole.profiles.view import SceneProfile
+from simconsole.profiles.world import WorldProfile
 from simconsole.scene.entities import Dimensions
-from simconsole.values.errors import WorkerError
+from simconsole.scene.timeline import NO_VEHICLE, ShownVehicle
+from simconsole.values.host.jit import compiled
+from simconsole.world.arena.arena_world import arena_of
+from simconsole.world.arena.laser_scan import LaserScanner
+from simconsole.world.arena.raycast import ray_grid
 from simconsole.world.drawing import Drawing
-from simconsole.world.drawing_arrays import from_arrays, to_arrays
+from simconsole.world.kinds.worlds import open_world
+from simconsole.world.route import Route
+
+
+class SceneSource(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What a session says of its scene, as it travels to the process that makes it."""
+
+    columns: tuple[str, ...]
+    """Of the state vectors to come."""
+    tick_hz: int
+    dimensions: Dimensions
+    vehicle: ShownVehicle
+    world: WorldProfile | None
+    robot: TurtlebotProfile | None
+    """With a lidar; None: the vehicle is none."""
+    seed: int
+    """Of the lidar's errors."""
+    has_camera: bool
+    """Whose pictures are shown."""
+    profile: SceneProfile
 
 
 class Job(NamedTuple):
@@ -22,45 +44,26 @@ class Job(NamedTuple):
     dimensions: Dimensions
     drawing: Drawing | None
     profile: SceneProfile
+    vehicle: ShownVehicle = NO_VEHICLE
+    route: Route | None = None
+    scanner: LaserScanner | None = None
+    has_camera: bool = False
 
 
-def save_job(path: Path, job: Job) -> None:
-    """Write a job.
-
-    Raises:
-        WorkerError: the file cannot be written.
-    """
-    content: dict[str, Any] = {
-        "columns": np.array(job.columns),
-        "tick_hz": job.tick_hz,
-        "dimensions": np.array(job.dimensions),
-        "profile": np.frombuffer(msgspec.json.encode(job.profile), dtype=np.uint8),
-    }
-    if job.drawing is not None:
-        content |= to_arrays(job.drawing)
-    try:
-        with path.open("wb") as file:
-            np.savez(file, **content)
-    except OSError as problem:
-        raise WorkerError(f"{path}: cannot be written: {problem.strerror}") from None
-
-
-def load_job(path: Path) -> Job:
-    """Read a job.
-
-    Raises:
-        WorkerError: missing, or not a scene job.
-    """
-    try:
-        with path.open("rb") as file, np.load(file, allow_pickle=False) as content:
-            return Job(
-                columns=tuple(content["columns"].tolist()),
-                tick_hz=int(content["tick_hz"]),
-                dimensions=Dimensions(*content["dimensions"].tolist()),
-                drawing=from_arrays(content),
-                profile=msgspec.json.decode(content["profile"].tobytes(), type=SceneProfile),
-            )
-    except OSError as problem:
-        raise WorkerError(f"{path}: cannot be read: {problem.strerror or problem}") from None
-    except (BadZipFile, ValueError, KeyError, TypeError, EOFError) as problem:
-        raise WorkerError(f"{path}: is not a scene job: {problem}") from None
+def job_of(source: SceneSource) -> Job:
+    """Open the world and return the job."""
+    world = None if source.world is None else open_world(source.world)
+    arena, scanner = None if world is None else arena_of(world), None
+    if source.robot is not None and arena is not None:
+        scanner = LaserScanner(source.robot.lidar, ray_grid(arena.outlines), source.seed, compiled)
+    return Job(
+        columns=source.columns,
+        tick_hz=source.tick_hz,
+        dimensions=source.dimensions,
+        drawing=None if world is None else world.drawing,
+        profile=source.profile,
+        vehicle=source.vehicle,
+        route=None if world is None else world.route,
+        scanner=scanner,
+        has_camera=source.has_camera,
+    )

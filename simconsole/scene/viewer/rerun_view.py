@@ -1,102 +1,93 @@
 """The scene in rerun: the only place that calls it, and only ever in a process of its own.
 
-rerun's log() may block for good when its viewer freezes, so nothing here may run beside the tick loop.
+rerun's log() may block for good when a viewer freezes, so nothing here may run beside the tick loop, and nothing here
+speaks to a viewer: both kinds of scenes are files.
 """
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 
-from simconsole.profiles.view import SceneProfile
-from simconsole.scene.entities import (
-    ASPHALT,
-    BODY,
-    GREEN,
-    GROUND,
-    HEAD_M,
-    LAMPS,
-    MAP_EDGE,
-    MODE_COLOURS,
-    PAINT,
-    POST_M,
-    TAKEOVER_COLOURS,
-    THEORETICAL,
-    WALL,
-    Array,
-    Dimensions,
-    Mesh,
-    WorldShapes,
-    car_solids,
-    on_map,
-    raised,
-)
+from simconsole.scene.entities import MODE_COLOURS, PAINT, WorldShapes, on_map, raised
 from simconsole.scene.lamp_shapes import LampShapes
+from simconsole.scene.lanes import LANES, LINK_COLOURS, LINK_LANE, Lane
+from simconsole.scene.latency_table import latency_table
+from simconsole.scene.lidar_shapes import ECHO, LidarShapes
+from simconsole.scene.plan_shapes import PlanShapes
+from simconsole.scene.plots import APPLIED, AUTOPILOT, PLOTS
+from simconsole.scene.predicted_way import Ways
 from simconsole.scene.road_user_shapes import RoadUserShapes
-from simconsole.scene.timeline import PLOTS, TAKEOVER_LABELS, Entry, Lane, Piece, Strip, Ticks
-from simconsole.scene.viewer.blueprint import MAP, TIMELINE, blueprint
+from simconsole.scene.timeline import Entry, Piece, Strip, Ticks
+from simconsole.scene.viewer.blueprint import CAMERA, LATENCY, LOG, TIMELINE, blueprint
+from simconsole.scene.viewer.job import Job
+from simconsole.scene.viewer.live_file import LiveFile
+from simconsole.scene.viewer.standing import MAP, show_vehicle, show_world
+from simconsole.scene.wheel_shapes import CORNERS, FORCE, M_PER_N, TYRE, WIDTH_M, WheelShapes
 from simconsole.values.errors import WorkerError
-from simconsole.values.labels import mode_label
+from simconsole.values.units import NS_PER_S
 
 APPLICATION: Final = "simconsole"
+PLAN: Final = "world/path/plan"
+MAP_PLAN: Final = f"{MAP}/path/plan"
 DRIVEN_PX: Final = 2.0
+WAY_PX: Final = 1.5
+"""As a radius, a negative number means pixels of the screen."""
 
 
 class RerunView:
     """One recording being written."""
 
-    def __init__(
-        self, path: Path, profile: SceneProfile, dimensions: Dimensions, world: WorldShapes | None, index: bool = True
-    ) -> None:
+    def __init__(self, path: Path, job: Job, world: WorldShapes | None, live: bool = False) -> None:
         """Open the file and write what stands still.
 
         Args:
             path: the file to write.
-            profile: rates and waits.
-            dimensions: the car's.
+            job: vehicle, rates and waits.
             world: what stands around it, if anything.
-            index: end the file with an index of all that was written. rerun collects it in memory, about 1.8 kB for
-                each call of `add` and entity, so a recording without an end has none; viewers read both.
+            live: append to the file in whole batches, each of which `settle` ends: viewers read it meanwhile.
+                Otherwise the file is new and ends with an index of all that was written.
 
         Raises:
             WorkerError: the file cannot be written.
         """
         import rerun as rr
 
-        self._flush_s = profile.flush_s
+        self._job, self._flush_s = job, job.profile.flush_s
         self._has_road_users = False
-        self._stream = rr.RecordingStream(APPLICATION, recording_id=path.stem, send_properties=True)
+        self._stream = rr.RecordingStream(
+            APPLICATION, recording_id=f"{path.parent.name} {path.stem}", send_properties=True
+        )
         rr.set_strict_mode(True)
-        try:
-            layout = blueprint(profile, dimensions.scale, None if world is None else world.path)
-            self._stream.save(path, default_blueprint=layout, write_footer=index)
-        except (OSError, RuntimeError) as problem:
-            raise WorkerError(f"{path}: the scene cannot be written: {problem}") from None
-        self._still("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
-        self._still(f"{MAP}/path/driven", rr.LineStrips2D.from_fields(draw_order=2.0))
-        self._still(f"{MAP}/ego", rr.Points2D.from_fields(draw_order=3.0))
-        self._car(dimensions)
-        for plot in PLOTS:
-            names = [line.name for line in plot.series]
-            self._still(plot.path, rr.SeriesLines(names=names, colors=[line.colour for line in plot.series]))
-        modes = {mode_label(mode): colour for mode, colour in MODE_COLOURS.items()}
-        stages = dict(zip(TAKEOVER_LABELS, TAKEOVER_COLOURS, strict=True))
-        for lane, colours in (("lanes/mode", modes), ("lanes/takeover", stages)):
-            self._still(lane, rr.StateConfiguration(values=list(colours), colors=list(colours.values())))
-        if world is not None:
-            self._world(world)
-        # rerun batches single log calls. After this flush even a killed process leaves a file with the world in it.
-        self._flush()
+        layout = blueprint(job, None if world is None else world.path, is_live=live)
+        if live:
+            self._file: LiveFile | None = LiveFile(path)
+            self._batches = rr.binary_stream(recording=self._stream)
+            self._stream.send_blueprint(layout, make_active=not self._file.length)
+        else:
+            self._file = None
+            try:
+                self._stream.save(path, default_blueprint=layout)
+            except (OSError, RuntimeError) as problem:
+                raise WorkerError(f"{path}: the scene cannot be written: {problem}") from None
+        self._show_still(world)
+        # After this even a killed process leaves a file with the world in it.
+        self.settle()
 
     def add(self, piece: Piece) -> None:
         """Write what a piece of the drive adds, one call per entity."""
         if len(piece.ticks):
             self._poses(piece)
-            self._plots(piece)
+            for path, values in piece.plots.items():
+                self._plot(path, piece.times_ns, values)
+            if piece.wheels is not None:
+                self._wheels(piece.times_ns, piece.wheels)
         for lane in piece.lanes:
-            self._lane(lane)
+            self.add_lane(lane)
         self._driven(piece.strips)
-        self._entries(piece.entries)
+        self._ways(piece.ways)
+        self.add_entries(piece.entries)
 
     def add_road_users(self, shapes: RoadUserShapes) -> None:
         """Write steps of traffic, boxes in 3D and their middles on the map."""
@@ -122,16 +113,77 @@ class RerunView:
         """Write which lamps of traffic lights shine after some changes."""
         import rerun as rr
 
-        lamps = rr.Points3D.columns(positions=shapes.centres, colors=shapes.colours, radii=[0.14] * len(shapes.centres))
+        count = len(shapes.centres)
+        lamps = rr.Points3D.columns(positions=shapes.centres, colors=shapes.colours, radii=[0.14] * count)
         self._send("world/lights/lit", shapes.times_ns, lamps.partition(shapes.counts))
+        spots = rr.Points2D.columns(positions=on_map(shapes.centres), colors=shapes.colours, radii=[-4.5] * count)
+        self._send(f"{MAP}/lit", shapes.times_ns, spots.partition(shapes.counts))
+
+    def add_lidar(self, shapes: LidarShapes) -> None:
+        """Write turns of the lidar."""
+        import rerun as rr
+
+        echoes = rr.Points3D.columns(positions=shapes.points).partition(shapes.counts)
+        self._send("world/lidar", shapes.times_ns, echoes)
+        spots = rr.Points2D.columns(positions=on_map(shapes.points)).partition(shapes.counts)
+        self._send(f"{MAP}/lidar", shapes.times_ns, spots)
+
+    def add_plans(self, shapes: PlanShapes) -> None:
+        """Write plans, each a line through its places: the further apart these are, the faster it means to be."""
+        import rerun as rr
+
+        if not shapes.times_ns:
+            return
+        lines = [points for points in shapes.points if len(points)]
+        has_line = [int(len(points) > 0) for points in shapes.points]
+        flat = [on_map(line) for line in lines]
+        self._send(PLAN, shapes.times_ns, rr.LineStrips3D.columns(strips=lines).partition(has_line))
+        self._send(MAP_PLAN, shapes.times_ns, rr.LineStrips2D.columns(strips=flat).partition(has_line))
+        counts = [len(points) for points in shapes.points]
+        places = rr.Points3D.columns(positions=np.concatenate(shapes.points)).partition(counts)
+        self._send(f"{PLAN}/places", shapes.times_ns, places)
+
+    def add_picture(self, tick: int, jpeg: bytes) -> None:
+        """Write a picture of the camera."""
+        import rerun as rr
+
+        picture = rr.EncodedImage.columns(blob=[jpeg], media_type=["image/jpeg"])
+        self._send(CAMERA, [tick * NS_PER_S // self._job.tick_hz], picture)
+
+    def add_latencies(self, t_ns: int, hops: Mapping[str, Any]) -> None:
+        """Write latency statistics as they are at a time."""
+        import rerun as rr
+
+        table = rr.TextDocument.columns(text=[latency_table(hops)], media_type=["text/markdown"])
+        self._send(LATENCY, [t_ns], table)
+
+    def add_lane(self, lane: Lane) -> None:
+        """Write the changes of a lane."""
+        import rerun as rr
+
+        if lane.times_ns:
+            self._send(lane.path, lane.times_ns, rr.StateChange.columns(state=lane.states))
+
+    def add_entries(self, entries: Sequence[Entry]) -> None:
+        """Write lines of the log."""
+        import rerun as rr
+
+        if entries:
+            lines = rr.TextLog.columns(text=[entry.text for entry in entries], level=[entry.level for entry in entries])
+            self._send(LOG, [entry.t_ns for entry in entries], lines)
 
     def settle(self) -> None:
         """Wait until all added is in the file: what rerun has queued for a slow disk would grow in memory.
 
         Raises:
-            WorkerError: the disk did not take it within the profile's wait; the file holds what came before.
+            WorkerError: the disk did not take it, or not within the profile's wait; the file holds what came before.
         """
-        self._flush()
+        try:
+            self._stream.flush(timeout_sec=self._flush_s)
+        except (RuntimeError, TimeoutError, ValueError) as problem:
+            raise WorkerError(f"the scene was not written whole within {self._flush_s:g} s: {problem}") from None
+        if self._file is not None:
+            self._file.append(self._batches.read(flush=False) or b"")
 
     def close(self) -> None:
         """Write what is still queued, but never wait longer than the profile says.
@@ -139,103 +191,48 @@ class RerunView:
         Raises:
             WorkerError: the queue could not be written in time; the file holds what came before.
         """
-        self._flush()
+        self.settle()
         self._stream.disconnect()
-
-    def _flush(self) -> None:
-        try:
-            self._stream.flush(timeout_sec=self._flush_s)
-        except (RuntimeError, TimeoutError, ValueError) as problem:
-            raise WorkerError(f"the scene was not written whole within {self._flush_s:g} s: {problem}") from None
+        if self._file is not None:
+            self._file.close()
 
     def _still(self, path: str, *shapes: Any) -> None:
         self._stream.log(path, *shapes, static=True)
 
-    def _car(self, dimensions: Dimensions) -> None:
+    def _show_still(self, world: WorldShapes | None) -> None:
         import rerun as rr
 
-        if dimensions.is_ball:
-            half = 0.5 * dimensions.height_m
-            ball = rr.Ellipsoids3D(
-                centers=[(0.0, 0.0, half)], half_sizes=[(half,) * 3], colors=[BODY], fill_mode="solid"
+        self._still("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
+        self._still(f"{MAP}/path/driven", rr.LineStrips2D.from_fields(draw_order=2.0))
+        self._still(f"{MAP}/ego", rr.Points2D.from_fields(draw_order=3.0))
+        show_vehicle(self._still, self._job.dimensions)
+        self._still("world/path/ahead", rr.LineStrips3D.from_fields(colors=[APPLIED], radii=[-WAY_PX]))
+        self._still(f"{MAP}/path/ahead", rr.LineStrips2D.from_fields(colors=[APPLIED], radii=[-WAY_PX], draw_order=2.2))
+        self._still(PLAN, rr.LineStrips3D.from_fields(colors=[AUTOPILOT], radii=[-WAY_PX]))
+        self._still(f"{PLAN}/places", rr.Points3D.from_fields(colors=[AUTOPILOT], radii=[0.12]))
+        self._still(MAP_PLAN, rr.LineStrips2D.from_fields(colors=[AUTOPILOT], radii=[-WAY_PX], draw_order=2.3))
+        if self._job.vehicle.wheels is not None:
+            radii = [wheel.radius_m for wheel in self._job.vehicle.wheels]
+            count = len(CORNERS)
+            self._still(
+                "world/ego/wheels",
+                rr.Cylinders3D.from_fields(
+                    lengths=[WIDTH_M] * count, radii=radii, colors=[TYRE] * count, fill_mode="solid"
+                ),
             )
-            self._still("world/ego/body", ball)
-            return
-        solids = car_solids(dimensions)
-        self._still(
-            "world/ego/body",
-            rr.Boxes3D(
-                centers=[solid.centre for solid in solids],
-                half_sizes=[solid.half_size for solid in solids],
-                colors=[solid.colour for solid in solids],
-                fill_mode="solid",
-            ),
-        )
-
-    def _world(self, world: WorldShapes) -> None:
-        for name, mesh, colour in (
-            ("ground", world.ground, GROUND),
-            ("surface", world.surfaces, ASPHALT),
-            ("island", world.islands, GREEN),
-            ("paint", world.paint, PAINT),
-            ("walls", world.walls, WALL),
-        ):
-            self._mesh(f"world/road/{name}", mesh, colour)
-        self._still("world/road/edges", _strips3d(world.edges, PAINT, 0.07))
-        self._still("world/road/centre", _strips3d(world.centre_dashes, PAINT, 0.07))
-        self._still("world/path/theoretical", _strips3d((world.path,), THEORETICAL, 0.12))
-        self._flat("road/edges", (*world.edges, *world.wall_lines), MAP_EDGE, 0.5, 0.0)
-        self._flat("path/theoretical", (world.path,), THEORETICAL, 3.0, 1.0)
-        self._lights(world)
-
-    def _mesh(self, path: str, mesh: Mesh, colour: tuple[int, int, int]) -> None:
-        import rerun as rr
-
-        if len(mesh.triangles):
-            up = np.tile((0.0, 0.0, 1.0), (len(mesh.vertices), 1))
-            shape = rr.Mesh3D(
-                vertex_positions=mesh.vertices,
-                triangle_indices=mesh.triangles,
-                vertex_normals=up,
-                albedo_factor=colour,
-                face_rendering="DoubleSided",
-            )
-            self._still(path, shape)
-
-    def _flat(
-        self, name: str, lines: tuple[Array, ...], colour: tuple[int, int, int], radius_px: float, order: float
-    ) -> None:
-        import rerun as rr
-
-        strips = rr.LineStrips2D(
-            [on_map(line) for line in lines],
-            colors=[colour],
-            radii=rr.Radius.ui_points(radius_px),
-            draw_order=order,
-        )
-        self._still(f"{MAP}/{name}", strips)
-
-    def _lights(self, world: WorldShapes) -> None:
-        import rerun as rr
-
-        if not len(world.light_posts):
-            return
-        posts = raised(world.light_posts, 0.5 * POST_M)
-        heads = raised(world.light_posts, POST_M)
-        count = len(posts)
-        self._still(
-            "world/lights/posts",
-            rr.Boxes3D(
-                centers=np.vstack((posts, heads)),
-                half_sizes=[(0.06, 0.06, 0.5 * POST_M)] * count + [(0.17, 0.17, 0.5 * HEAD_M + 0.05)] * count,
-                colors=[(70, 76, 84)],
-                fill_mode="solid",
-            ),
-        )
-        lamps = world.light_lamps.reshape(-1, 3)
-        self._still("world/lights/lamps", rr.Points3D(lamps, colors=list(LAMPS) * count, radii=[0.11]))
-        spots = on_map(world.light_posts)
-        self._still(f"{MAP}/lights", rr.Points2D(spots, colors=[(255, 176, 32)], radii=rr.Radius.ui_points(3.5)))
+            self._still("world/ego/tyre_forces", rr.Arrows3D.from_fields(colors=[FORCE] * count, radii=[0.03] * count))
+        if self._job.scanner is not None:
+            self._still("world/lidar", rr.Points3D.from_fields(colors=[ECHO], radii=[-2.0]))
+            self._still(f"{MAP}/lidar", rr.Points2D.from_fields(colors=[ECHO], radii=[-WAY_PX]))
+        for plot in PLOTS:
+            names = [line.name for line in plot.series]
+            self._still(plot.path, rr.SeriesLines(names=names, colors=[line.colour for line in plot.series]))
+        for path, colours in ((LINK_LANE, LINK_COLOURS), *((kind.path, kind.colours) for kind in LANES)):
+            if colours:
+                states = rr.StateConfiguration(values=list(colours), colors=list(colours.values()))
+                self._still(path, states)
+        if world is not None:
+            show_world(self._still, world)
 
     def _send(self, path: str, times_ns: Ticks | list[int], columns: Any) -> None:
         import rerun as rr
@@ -254,19 +251,24 @@ class RerunView:
         )
         self._send(f"{MAP}/ego", piece.times_ns, spot)
 
-    def _plots(self, piece: Piece) -> None:
+    def _plot(self, path: str, times_ns: Ticks, values: Any) -> None:
         import rerun as rr
 
-        for path, values in piece.plots.items():
-            lengths = [values.shape[1]] * values.shape[0]
-            columns = rr.Scalars.columns(scalars=values.reshape(-1)).partition(lengths)
-            self._send(path, piece.times_ns, columns)
+        lengths = [values.shape[1]] * values.shape[0]
+        self._send(path, times_ns, rr.Scalars.columns(scalars=values.reshape(-1)).partition(lengths))
 
-    def _lane(self, lane: Lane) -> None:
+    def _wheels(self, times_ns: Ticks, wheels: WheelShapes) -> None:
         import rerun as rr
 
-        if lane.times_ns:
-            self._send(lane.path, lane.times_ns, rr.StateChange.columns(state=lane.states))
+        lengths = [len(CORNERS)] * len(times_ns)
+        cylinders = rr.Cylinders3D.columns(
+            centers=wheels.centres.reshape(-1, 3), quaternions=wheels.quaternions.reshape(-1, 4)
+        )
+        self._send("world/ego/wheels", times_ns, cylinders.partition(lengths))
+        arrows = rr.Arrows3D.columns(
+            origins=wheels.patches.reshape(-1, 3), vectors=M_PER_N * wheels.forces_n.reshape(-1, 3)
+        )
+        self._send("world/ego/tyre_forces", times_ns, arrows.partition(lengths))
 
     def _driven(self, strips: tuple[Strip, ...]) -> None:
         import rerun as rr
@@ -282,15 +284,11 @@ class RerunView:
         radii = [-DRIVEN_PX] * len(strips)  # negative: pixels
         self._send(f"{MAP}/path/driven", times_ns, rr.LineStrips2D.columns(strips=flat, colors=colours, radii=radii))
 
-    def _entries(self, entries: tuple[Entry, ...]) -> None:
+    def _ways(self, ways: Ways) -> None:
         import rerun as rr
 
-        if entries:
-            lines = rr.TextLog.columns(text=[entry.text for entry in entries], level=[entry.level for entry in entries])
-            self._send("log", [entry.t_ns for entry in entries], lines)
-
-
-def _strips3d(lines: tuple[Array, ...], colour: tuple[int, int, int], radius_m: float) -> Any:
-    import rerun as rr
-
-    return rr.LineStrips3D(lines, colors=[colour], radii=[radius_m])
+        if not len(ways.times_ns):
+            return
+        self._send("world/path/ahead", ways.times_ns, rr.LineStrips3D.columns(strips=list(ways.points)))
+        flat = [on_map(way) for way in ways.points]
+        self._send(f"{MAP}/path/ahead", ways.times_ns, rr.LineStrips2D.columns(strips=flat))

@@ -23,13 +23,17 @@ from typing import Any, Final, TypeVar
 import numpy as np
 
 from simconsole.values.host import lowering
-from simconsole.values.kernels import forget, is_kernel
+from simconsole.values.kernels import forget, is_kernel, is_stage
 from simconsole.values.layout import Part, read, write
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 _COMPILER: Final = b"".join(Path(source).read_bytes() for source in (__file__, lowering.__file__))
 """Source of the compiler that this process runs: read at import, since the files may be edited afterwards."""
+
+_OPTIONS: Final[dict[str, Any]] = {"fastmath": False, "error_model": "numpy", "_nrt": False}
+"""A kernel's arrays are its caller's, it makes none: without numba's runtime it counts no references to them. Counting
+took two thirds of the time of kernels that hand on tuples of arrays."""
 
 KEEP_UNUSED_S: Final = 30 * 24 * 3600.0
 """Compiled code that nobody has loaded for a month is removed when something new is compiled."""
@@ -63,7 +67,7 @@ def digest(function: Callable[..., Any]) -> str:
     """
     text = hashlib.sha256(f"{function.__module__}.{function.__qualname__}{sys.version}".encode())
     text.update(_COMPILER)
-    text.update(repr(function.__defaults__).encode())
+    text.update(repr((function.__defaults__, is_stage(function))).encode())
     text.update(repr([(name, _type_stamp(kind)) for name, kind in function.__annotations__.items()]).encode())
     for code in _codes(function.__code__):
         text.update(code.co_code)
@@ -135,10 +139,10 @@ def compiled_for_each(step: Callable[..., Any]) -> Callable[..., None]:
     Returns: a function of (rows before, rows after, parameters, grounds, which of them each vehicle is on, an int), the
         tables float64 [vehicles or grounds, columns].
     """
-    namespace = {"__name__": __name__, "step": _inner(step), "prange": _numba().prange}
+    namespace = {"__name__": __name__, "step": _for_numba(step), "prange": _numba().prange}
     twin = types.FunctionType(_for_each.__code__, namespace, "for_each")
     twin.__module__ = __name__  # numba asks for it when it loads compiled code from the cache
-    return _cached(twin, digest(step) + "-each", parallel=True)  # type: ignore[no-any-return]
+    return _cached(twin, digest(step) + "-each", parallel=True, _nrt=True)  # type: ignore[no-any-return]
 
 
 def _for_each(before: Any, after: Any, parameters: Any, grounds: Any, on: Any, count: int) -> None:
@@ -149,7 +153,7 @@ def _for_each(before: Any, after: Any, parameters: Any, grounds: Any, on: Any, c
 
 @cache
 def _entry(function: Callable[..., Any]) -> Any:
-    """Return the dispatcher that Python calls. The kernels inside it are in its code, not cached again."""
+    """Return the dispatcher that Python calls, and kernels call of a stage. The other kernels are in its code."""
     return _cached(_twin(function), digest(function))
 
 
@@ -166,14 +170,14 @@ def _cached(twin: types.FunctionType, name: str, **options: bool) -> Any:
     source.touch()
     twin.__code__ = twin.__code__.replace(co_filename=str(source), co_firstlineno=1)
     numba.config.CACHE_DIR = str(folder)
-    dispatcher = numba.njit(cache=True, fastmath=False, error_model="numpy", **options)(twin)
+    dispatcher = numba.njit(cache=True, **{**_OPTIONS, **options})(twin)
     dispatcher._cache._index_key = lambda signature, codegen: (signature, codegen.magic_tuple())
     return dispatcher
 
 
 @cache
 def _inner(function: Callable[..., Any]) -> Any:
-    return _numba().njit(fastmath=False, forceinline=True, error_model="numpy")(_twin(function))
+    return _numba().njit(forceinline=True, **_OPTIONS)(_twin(function))
 
 
 def _twin(function: Callable[..., Any]) -> types.FunctionType:
@@ -192,7 +196,7 @@ def _twin(function: Callable[..., Any]) -> types.FunctionType:
 
 def _for_numba(value: Any) -> Any:
     if is_kernel(value):
-        return _inner(value)
+        return _entry(value) if is_stage(value) else _inner(value)
     return _numbers(value) if isinstance(value, EnumType) else value
 
 

@@ -82,6 +82,7 @@ class Notice(IntEnum):
     OFF_ROAD = 9
     SPEEDING = 10
     FAILING_TO_YIELD = 11
+    COLLISION = 12
 
 
 class SignalState(IntEnum):
@@ -145,7 +146,7 @@ class Event(IntFlag):
     RECORDING_FAILED = 131072  # in every tick from the one after the failure: nothing more is kept
     END = 262144  # somebody has ended the drive by a signal; from here on the console brings the vehicle to rest
     OPERATOR = 524288  # beside the acts that an operator asked for: they are told as the operator's
-    COLLISION = 1048576  # the vehicle has touched a road user that it did not touch before
+    COLLISION = 1048576  # the vehicle has touched a road user or a fixed thing that it did not touch before
 
 
 class Button(IntFlag):

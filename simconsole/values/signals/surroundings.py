@@ -19,6 +19,35 @@ NO_AHEAD: Final = AheadInput(lead_gap_m=FAR, lead_speed_mps=0.0, yield_m=FAR, yi
 """An empty road."""
 
 
+class ImpactInput(NamedTuple):
+    """What a collision with a road user does at once: the change of the motion of the vehicle's centre of gravity.
+
+    An input, for those who are struck are not in the state.
+    """
+
+    first_touch: float  # 1: somebody is touched who was not touched before
+    vx_mps: float  # along the vehicle
+    vy_mps: float
+    yaw_rate_radps: float
+
+
+NO_IMPACT: Final = ImpactInput(first_touch=0.0, vx_mps=0.0, vy_mps=0.0, yaw_rate_radps=0.0)
+"""A vehicle that nobody touches."""
+
+
+class ObstacleImpact(NamedTuple):
+    """What fixed things that the vehicle runs into do to it in a tick; a collision with road users is `ImpactInput`."""
+
+    touches: float  # 1: it moves on into one
+    vx_mps: float  # change of the motion of its centre of gravity, along the vehicle
+    vy_mps: float
+    yaw_rate_radps: float
+
+
+NO_OBSTACLE_TOUCHED: Final = ObstacleImpact(touches=0.0, vx_mps=0.0, vy_mps=0.0, yaw_rate_radps=0.0)
+"""A vehicle with room round it, or a world without fixed things."""
+
+
 class Situation(NamedTuple):
     """The road around the vehicle; everything else of a world is drawn from the map, the tick and other streams."""
 
@@ -63,11 +92,13 @@ class Rules(NamedTuple):
     A breach begins and ends only after it has been seen, or not seen, for a while: the times count that.
     """
 
+    collision: float  # it has touched a road user or a fixed thing; shown for a while
     red_light: float  # its front has passed a stop line at red; shown for a while
     wrong_way: float
     off_road: float
     speeding: float
     failing_to_yield: float  # its front has passed a line before which it had to let others pass; shown for a while
+    collision_s: float  # since the touch
     red_light_s: float  # since it was passed
     wrong_way_s: float
     off_road_s: float

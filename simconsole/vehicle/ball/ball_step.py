@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 
 from simconsole.values.ground import GROUND, NODES_AT
 from simconsole.values.height_field import spot_at
-from simconsole.values.kernels import Row, approach, clip, is_finite, kernel
+from simconsole.values.kernels import Row, approach, clip, is_finite, kernel, stage
 from simconsole.values.layout import Part, read, write
 from simconsole.values.platform import Step
 from simconsole.values.signals import VehicleCommand, VehicleState
@@ -81,7 +81,7 @@ class Velocity(NamedTuple):
 def make_step(ground_of: BallGroundModel) -> Step:
     """Return the kernel that advances the ball by one tick on such ground: the interface of values/platform.py."""
 
-    @kernel
+    @stage
     def step(previous: Row, row: Row, parameters: Row, ground: Row, substeps: int) -> None:
         p = read(parameters, PARAMETERS)
         command = read(row, LAYOUT.command)

@@ -8,7 +8,9 @@ from typing import Final, NamedTuple
 from simconsole.values.kernels import clip, kernel
 from simconsole.values.signals import Request
 from simconsole.vehicle.car.axles import Axles, Contact
-from simconsole.vehicle.car.parameters import AidParameters, AxleParameters, CarParameters
+from simconsole.vehicle.car.engine import EngineTorques
+from simconsole.vehicle.car.gearbox import LOCKED_RADPS, gear_ratio
+from simconsole.vehicle.car.parameters import AxleParameters, CarParameters
 from simconsole.vehicle.car.state import AidState, Car, Wheel
 
 RELEASE_PEAKS: Final = 1.25
@@ -25,9 +27,10 @@ LEAST_SLIP_MPS: Final = 0.3
 """Slip that is never too much: the tyre's deflection needs its way to build up."""
 SLOW_MPS: Final = 1.5
 """Below this speed ABS leaves the wheels alone: a lock at walking pace hurts nobody."""
-TRACTION_GAIN: Final = 0.15
-TRACTION_PER_S: Final = 2.0
-"""Throttle per slip that is left to the peak, and its change per second: proportional and integral part of TCS."""
+TRACTION_S: Final = 0.05
+"""Time in which traction control brings the slip to that of the peak."""
+ANY_NM: Final = 1e9
+"""No limit of a torque."""
 DEAD_RADPS: Final = 0.035
 """Yaw rate by which a car may differ from the model before ESC acts: 2 deg/s."""
 STABILITY_FROM_MPS: Final = 4.0
@@ -55,11 +58,22 @@ class Brakes(NamedTuple):
     rr_nm: float
 
 
-class Throttle(NamedTuple):
-    """What traction control leaves of the throttle, and the part of that which it remembers."""
+class Drive(NamedTuple):
+    """What traction control leaves of the drive."""
 
-    share: float
-    kept_share: float
+    share: float  # of the throttle; 1: it does nothing
+    throttle: float  # what is left of the driver's
+    clutch_nm: float  # the most that the automatic's clutch may transmit while it slips
+
+
+class Spin(NamedTuple):
+    """The driven wheels on their ground, forwards in the direction in which the gear drives."""
+
+    way: float  # 1, and -1 in reverse
+    force_n: float
+    load_n: float
+    slip_mps: float
+    bound: float  # load times the slip that they may have, N m/s
 
 
 @kernel
@@ -94,27 +108,84 @@ def anti_lock_rate(axle: AxleParameters, wheel: Wheel, on: Contact, stability_nm
 
 
 @kernel
-def traction(
-    aids: AidParameters, axle: AxleParameters, kept: float, left: Contact, right: Contact, rim_mps: float, step_s: float
-) -> Throttle:
-    """Return what is left of the throttle: a PI control that holds the driven wheels at the slip of their peak.
-
-    `rim_mps` is the speed of their rims in the direction of the drive: of a car that rolls back on a hill, too.
-    """
-    if aids.traction == 0.0:
-        return Throttle(1.0, 1.0)
+def spin_of(axle: AxleParameters, left: Contact, right: Contact, mean_radps: float, gear: float) -> Spin:
+    """Return how the driven wheels slip. Wheels that the engine holds back, or brakes, have a slip below 0."""
+    way = -1.0 if gear < 0.0 else 1.0
     ground = 0.5 * (left.ground_mps + right.ground_mps)
     force = left.tyre.force_x_n + right.tyre.force_x_n
     load = left.load_n + right.load_n + 1.0  # never 0
     peak = slip_at_peak(axle, force, abs(ground))
     least = LEAST_SLIP_MPS * load
-    bound = peak if peak > least else least
-    slipping = abs(rim_mps - ground) * load
-    if kept == 1.0 and slipping <= bound:  # nothing to take back: the same result without the division
-        return Throttle(1.0, 1.0)
-    left_over = clip(1.0 - slipping / bound, -2.0, 1.0)
-    now = clip(kept + TRACTION_PER_S * step_s * left_over, 0.0, 1.0)
-    return Throttle(clip(now + TRACTION_GAIN * left_over, 0.0, 1.0), now)
+    return Spin(way, way * force, load, way * (mean_radps * axle.radius_m - ground), peak if peak > least else least)
+
+
+@kernel
+def traction(
+    car: Car,
+    p: CarParameters,
+    request: Request,
+    can: EngineTorques,
+    axle: AxleParameters,
+    left: Contact,
+    right: Contact,
+    mean_radps: float,
+) -> Drive:
+    """Return what is left of the drive where the driven wheels slip beyond the peak of their force.
+
+    `can` is what the engine can give, `mean_radps` the speed of the driven wheels.
+    """
+    if p.aids.traction != 0.0:
+        spin = spin_of(axle, left, right, mean_radps, car.box.gear)
+        if car.aids.throttle_share != 1.0 or spin.slip_mps * spin.load_n > spin.bound:
+            return regulated(car, p, request, can, axle, spin, mean_radps)
+    return Drive(1.0, request.throttle, ANY_NM)
+
+
+@kernel
+def regulated(
+    car: Car,
+    p: CarParameters,
+    request: Request,
+    can: EngineTorques,
+    axle: AxleParameters,
+    spin: Spin,
+    mean_radps: float,
+) -> Drive:
+    """Return the drive that brings the slip to that of the peak, from either side and whatever the tyres' curve.
+
+    That is the torque which the tyres take now, and beyond it what gives all that turns with the wheels the speed they
+    lack. So nothing is summed up, and nothing has to be taken back later. Where the clutch is closed it is the torque
+    of the engine. Where the automatic slips it, it is that of the clutch: the engine keeps its throttle, or it could
+    never pull the car off. While a person slips the clutch the throttle has no hold on the wheels; once it is closed
+    the engine must not be slowed down to where it dies.
+    """
+    gears = p.gears
+    ratio = gear_ratio(gears, car.box.gear)
+    leverage = spin.way * ratio
+    engine = car.shafts.engine_radps
+    closed = abs(engine - ratio * mean_radps) < LOCKED_RADPS
+    by_hand = car.box.lever_adopted != 0.0
+    span = request.throttle * (can.full_nm + can.friction_nm - can.closed_nm)
+    if leverage <= 0.0 or span <= 0.0 or (by_hand and not closed):
+        return Drive(1.0, request.throttle, ANY_NM)
+    lacking = spin.bound / spin.load_n - spin.slip_mps
+    if by_hand:
+        pulling = gears.launch_from_radps + gears.launch_per_throttle_radps * request.throttle
+        alive = (pulling / leverage - spin.way * mean_radps) * axle.radius_m
+        lacking = lacking if lacking > alive else alive
+    inertia = 2.0 * axle.wheel_inertia_kgm2
+    if closed or lacking > 0.0:
+        inertia += ratio * ratio * p.engine.inertia_kgm2
+    wheels_mps2 = spin.way * car.body.ax_mps2 + lacking * (1.0 / TRACTION_S)
+    wheels_nm = axle.radius_m * (spin.force_n + axle.rolling_resistance * spin.load_n)
+    most_nm = (wheels_nm + inertia * wheels_mps2 / axle.radius_m) / (leverage * (1.0 - gears.loss_share))
+    share = (most_nm + can.friction_nm - can.closed_nm) / span
+    if share >= 1.0:
+        return Drive(1.0, request.throttle, ANY_NM)
+    share = share if share > 0.0 else 0.0
+    if closed:
+        return Drive(share, share * request.throttle, ANY_NM)
+    return Drive(share, request.throttle, most_nm if most_nm > 0.0 else 0.0)
 
 
 @kernel

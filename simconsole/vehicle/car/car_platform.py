@@ -15,7 +15,7 @@ from simconsole.profiles.vehicle import (
 from simconsole.values.errors import ProfileError
 from simconsole.values.ground import GROUND, Ground, ground_row
 from simconsole.values.layout import Part, read, write
-from simconsole.values.platform import Platform, Pose, Step
+from simconsole.values.platform import Platform, Pose, Solid, Step
 from simconsole.values.trigonometry import wrap_angle
 from simconsole.values.units import MPS_PER_KMH, RAD_PER_DEG, RADPS_PER_RPM, STANDARD_GRAVITY_MPS2
 from simconsole.vehicle.car.aid_parameters import aid_parameters, slip_stiffness
@@ -104,6 +104,7 @@ def build_car(profile: CarProfile, pose: Pose, ground: Ground) -> Platform:
         width_m=body.width_m,
         height_m=body.height_m,
         rear_overhang_m=body.rear_overhang_m,
+        solid=Solid(body.mass_kg, body.yaw_inertia_kgm2, car.body.cg_to_rear_m),
     )
 
 

@@ -4,10 +4,10 @@ from collections.abc import Callable
 from typing import Final
 
 from simconsole.values.ground import GROUND
-from simconsole.values.kernels import Row, clip, forget, is_finite, kernel
+from simconsole.values.kernels import Row, clip, forget, is_finite, kernel, stage
 from simconsole.values.layout import read, write
 from simconsole.values.platform import Step
-from simconsole.values.signals import Request, VehicleCommand
+from simconsole.values.signals import ImpactInput, ObstacleImpact, Request, VehicleCommand
 from simconsole.values.state_vector import LAYOUT
 from simconsole.values.trigonometry import nearest
 from simconsole.vehicle.car.axles import Contact, KingpinMoment, TyreModel, kingpin_moment, tyre_forces
@@ -16,7 +16,7 @@ from simconsole.vehicle.car.driveline import driveline_step
 from simconsole.vehicle.car.ground import Grips, Lie, field_grips, on_field, on_plane, plane_grips
 from simconsole.vehicle.car.outputs import vehicle_state
 from simconsole.vehicle.car.parameters import PARAMETERS, AidParameters, CarParameters
-from simconsole.vehicle.car.state import CAR, Car, SteeringState, Wheel
+from simconsole.vehicle.car.state import CAR, BodyState, Car, SteeringState, Wheel
 from simconsole.vehicle.car.steering import hand_wheel_torque, rack_rate, rim_friction, wheel_directions
 from simconsole.vehicle.car.tyre import tyre
 
@@ -42,10 +42,10 @@ def load_parameters(parameters: Row) -> CarParameters:
 def make_step(tyre: TyreModel, rim_moment: KingpinMoment, grips_of: GripsModel, lie_of: LieModel) -> Step:
     """Return the kernel that advances a car on such tyres and ground by one tick, as values/platform.py has it."""
 
-    @kernel
+    @stage
     def step(previous: Row, row: Row, parameters: Row, ground: Row, substeps: int) -> None:
         command = read(row, LAYOUT.command)
-        car = read(previous, CAR)
+        car = struck(read(previous, CAR), read(row, LAYOUT.impact), read(row, LAYOUT.obstacle))
         grips = grips_of(car, load_parameters(parameters), ground)
         request = request_of(command, car)
         aids = aids_left_on(load_parameters(parameters).aids, command)
@@ -55,6 +55,44 @@ def make_step(tyre: TyreModel, rim_moment: KingpinMoment, grips_of: GripsModel, 
         write(row, LAYOUT.vehicle, vehicle_state(car, load_parameters(parameters), ground, lie_of, command.automatic))
 
     return step
+
+
+@kernel
+def struck(car: Car, impact: ImpactInput, obstacle: ObstacleImpact) -> Car:
+    """Return the car after collisions with road users and fixed things, which change its motion at once."""
+    vx_mps, vy_mps = impact.vx_mps + obstacle.vx_mps, impact.vy_mps + obstacle.vy_mps
+    yaw_rate_radps = impact.yaw_rate_radps + obstacle.yaw_rate_radps
+    if vx_mps == 0.0 and vy_mps == 0.0 and yaw_rate_radps == 0.0:
+        return car
+    before = car.body
+    body = BodyState(
+        x_m=before.x_m,
+        y_m=before.y_m,
+        yaw_rad=before.yaw_rad,
+        vx_mps=before.vx_mps + vx_mps,
+        vy_mps=before.vy_mps + vy_mps,
+        yaw_rate_radps=before.yaw_rate_radps + yaw_rate_radps,
+        ax_mps2=before.ax_mps2,
+        ay_mps2=before.ay_mps2,
+        heave_m=before.heave_m,
+        heave_mps=before.heave_mps,
+        roll_rad=before.roll_rad,
+        roll_radps=before.roll_radps,
+        pitch_rad=before.pitch_rad,
+        pitch_radps=before.pitch_radps,
+        distance_m=before.distance_m,
+    )
+    return Car(
+        body=body,
+        steering=car.steering,
+        fl=car.fl,
+        fr=car.fr,
+        rl=car.rl,
+        rr=car.rr,
+        shafts=car.shafts,
+        box=car.box,
+        aids=car.aids,
+    )
 
 
 @kernel

@@ -66,26 +66,26 @@ def driveline_step(car: Car, p: CarParameters, request: Request, axles: Axles, s
     driven_axle = p.rear if at_rear else p.front
     left = axles.rl if at_rear else axles.fl
     right = axles.rr if at_rear else axles.fr
-    grip = traction(p.aids, driven_axle, car.aids.throttle_share, left, right, mean * driven_axle.radius_m, step_s)
-    asked = request.throttle * grip.share
     can = torques_at(p.engine, before.engine_radps)
+    left_over = traction(car, p, request, can, driven_axle, left, right, mean)
     automatic_nm = 0.0
     if request.automatic != 0.0 or car.box.lever_adopted == 0.0:
-        automatic_nm = net_torque(can, before.engine_running, asked)
+        automatic_nm = net_torque(can, before.engine_running, left_over.throttle)
     turning = Turning(
         engine_radps=before.engine_radps,
         wheel_radps=mean,
         vx_mps=car.body.vx_mps,
         asked_nm=automatic_nm,
+        most_nm=left_over.clutch_nm,
         hot=before.clutch_hot,
     )
     box = gearbox_step(p.gears, car.box, request, turning, step_s)
     clutch_nm = clutch_torque(before.engine_radps, p, box)
     ratio = gear_ratio(p.gears, box.gear)
     held = hill_hold(car, p, request, axles, ratio, step_s)
-    aids = AidState(grip.kept_share, stability(car, p, request.handbrake, step_s), held.hold_left_s, held.hold_brake)
+    aids = AidState(left_over.share, stability(car, p, request.handbrake, step_s), held.hold_left_s, held.hold_brake)
     brakes = brake_torques(car, p, request, axles, aids, step_s)
-    throttle = matched_throttle(p.gears, box, asked, before.engine_radps, mean)
+    throttle = matched_throttle(p.gears, box, left_over.throttle, before.engine_radps, mean)
     drive = engine_drive(p.engine, can, before.engine_radps, before.engine_running, throttle, clutch_nm == 0.0)
     fl = spun(p.front, car.fl, axles.fl, step_s)
     fr = spun(p.front, car.fr, axles.fr, step_s)

@@ -48,6 +48,7 @@ class Turning(NamedTuple):
     wheel_radps: float  # mean of the driven wheels
     vx_mps: float
     asked_nm: float  # what the engine would give at its speed and at the driver's throttle, friction taken off
+    most_nm: float  # what the clutch may transmit at most while it slips: more would spin the wheels
     hot: float  # 1 while the clutch must cool
 
 
@@ -202,7 +203,9 @@ def automatic_torque(p: GearParameters, box: Gearbox, request: Request, turning:
 @kernel
 def automatic_clutch(p: GearParameters, box: Gearbox, request: Request, turning: Turning, step_s: float) -> float:
     """Return the pedal position of the automatic clutch, one step further to where it transmits the wanted torque."""
-    share = clip(automatic_torque(p, box, request, turning) * p.per_clutch_nm, 0.0, 1.0)
+    torque = automatic_torque(p, box, request, turning)
+    torque = torque if torque < turning.most_nm else turning.most_nm
+    share = clip(torque * p.per_clutch_nm, 0.0, 1.0)
     target = 0.0  # fully closed, as with the pedal released
     if share < 1.0:
         target = p.bite_open - sqrt(share) * (p.bite_open - p.bite_closed)

@@ -7,7 +7,7 @@ Contact stops the body, not the wheels: they slip on the floor, and odometry cou
 from math import sqrt
 from typing import Final, NamedTuple
 
-from simconsole.values.kernels import Row, approach, clip, is_finite, kernel
+from simconsole.values.kernels import Row, approach, clip, is_finite, kernel, stage
 from simconsole.values.layout import read, write
 from simconsole.values.signals import VehicleCommand, VehicleState
 from simconsole.values.state_vector import LAYOUT
@@ -47,7 +47,7 @@ class Drawn(NamedTuple):
     seed: float
 
 
-@kernel
+@stage
 def step(previous: Row, row: Row, parameters: Row, ground: Row, substeps: int) -> None:
     """Advance the robot by one tick: the platform interface of values/platform.py. Its floor is level."""
     p = read(parameters, PARAMETERS)

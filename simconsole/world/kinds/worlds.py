@@ -43,9 +43,10 @@ def open_map(profile: RoadsProfile) -> RoadMap:
     found = read_net(read_map(profile.map), profile.map.name)
     if profile.polygons is None:
         return found
-    outlines, skipped = read_polygons(read_map(profile.polygons), profile.polygons.name)
+    things, skipped = read_polygons(read_map(profile.polygons), profile.polygons.name)
     report = found.report._replace(skipped=found.report.skipped + skipped)
-    return found._replace(obstacles=tuple(outline - found.moved_m for outline in outlines), report=report)
+    moved = tuple(thing._replace(outline=thing.outline - found.moved_m) for thing in things)
+    return found._replace(obstacles=moved, report=report)
 
 
 def road_signals(profile: WorldProfile | None, tick_hz: int) -> RoadSignals | None:

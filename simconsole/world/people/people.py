@@ -68,6 +68,10 @@ class People:
             place for place in np.flatnonzero(self.rows[:, LENGTH] == 0.0).tolist() if self._waited(place, period_s)
         ]
 
+    def fall(self, place: int) -> None:
+        """Let somebody lie where they are."""
+        self.rows[place, PACE] = self.rows[place, SPEED] = 0.0
+
     def _waited(self, place: int, period_s: float) -> bool:
         """Return whether somebody comes now in the place of who has gone."""
         row = self.rows[place]

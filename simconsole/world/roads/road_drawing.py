@@ -9,16 +9,33 @@ import numpy as np
 
 from simconsole.world.drawing import Drawing
 from simconsole.world.drawing_layers import STEP_M, DrawingLayers, Frame, Light, LightProgram, add_zebra, box
-from simconsole.world.roads.road_map import CROSSING, ROAD, Array, Connection, Lane, RoadMap, active
+from simconsole.world.roads.road_map import (
+    BUILDING,
+    CONE,
+    CROSSING,
+    ROAD,
+    TREE,
+    WALL,
+    Array,
+    Connection,
+    Lane,
+    RoadMap,
+    active,
+)
 from simconsole.world.route import Route
 
 NEAR_M: Final = 250.0
 """What lies further from the route is not drawn: a city has too much of it."""
+HEIGHTS_M: Final = {BUILDING: 8.0, CONE: 0.75, TREE: 5.0, WALL: 1.8}
+"""Of what the map's files have no height."""
 _CHUNK_M: Final = 12.0
 _STOP_LINE_M: Final = 0.5
 _POST_M: Final = 0.9
 _SPARSE_M: Final = 20.0
 _STRAIGHT: Final = "s"
+_LEADS_AHEAD: Final = ("s", "l", "L", "R")
+"""Where the right side of the road after the junction is before those who come."""
+_POST_APART_M: Final = 0.3
 
 
 def draw_roads(road_map: RoadMap, route: Route) -> Drawing:
@@ -38,9 +55,12 @@ def draw_roads(road_map: RoadMap, route: Route) -> Drawing:
             layers.surfaces.append(junction.outline)
     for place, link in _signalled(road_map).items():
         _add_stop(layers, road_map, place, link, near)
-    for outline in road_map.obstacles:
+    walls = []
+    for kind, outline in road_map.obstacles:
         if near.to(outline):
-            layers.edges.append(np.vstack((outline, outline[:1])))
+            closed = np.vstack((outline, outline[:1]))
+            layers.edges.append(closed)
+            walls.append(np.column_stack((closed, np.full(len(closed), HEIGHTS_M[kind]))))
     return Drawing(
         surfaces=tuple(layers.surfaces),
         islands=tuple(layers.islands),
@@ -50,6 +70,7 @@ def draw_roads(road_map: RoadMap, route: Route) -> Drawing:
         stop_lines=tuple(layers.stop_lines),
         lights=tuple(layers.lights),
         path=route.offset(0.0, 0.0, route.length_m, STEP_M),
+        walls=tuple(walls),
     )
 
 
@@ -139,7 +160,6 @@ def _program(road_map: RoadMap, link: Connection) -> LightProgram:
 
 def _add_stop(layers: DrawingLayers, road_map: RoadMap, place: int, link: Connection, near: _Near) -> None:
     lane = road_map.lanes[place]
-    edge = road_map.edges[lane.edge]
     end = lane.line[-1, :2]
     if not near.to(end[None, :]):
         return
@@ -147,7 +167,24 @@ def _add_stop(layers: DrawingLayers, road_map: RoadMap, place: int, link: Connec
     frame = Frame(float(end[0]), float(end[1]), yaw)
     half = 0.5 * lane.width_m
     layers.stop_lines.append(frame.out(box(-_STOP_LINE_M, 0.0, 0.2 - half, half - 0.2)))
-    outer = road_map.lanes[edge.lanes[0]]
-    post = frame.out(np.array(((0.0, -0.5 * outer.width_m - _POST_M - half * 2.0 * (lane.number - outer.number)),)))
-    x, y = post[0].round(3).tolist()
-    layers.lights.append(Light(x, y, yaw, _program(road_map, link)))
+    for x, y in (_beside(road_map, lane, frame), *_beyond(road_map, link)):
+        light = Light(x, y, yaw, _program(road_map, link))
+        if all(math.dist(light[:2], other[:2]) > _POST_APART_M or other.yaw_rad != yaw for other in layers.lights):
+            layers.lights.append(light)
+
+
+def _beside(road_map: RoadMap, lane: Lane, frame: Frame) -> tuple[float, float]:
+    """Return a post's place on the right of a road, at a place of one of its lanes."""
+    outer = road_map.lanes[road_map.edges[lane.edge].lanes[0]]
+    aside = 0.5 * outer.width_m + _POST_M + lane.width_m * (lane.number - outer.number)
+    x, y = frame.out(np.array(((0.0, -aside),)))[0].round(3).tolist()
+    return x, y
+
+
+def _beyond(road_map: RoadMap, link: Connection) -> Iterator[tuple[float, float]]:
+    """Yield the place of the post beyond the junction, for who waits at the line and has the first one beside them."""
+    if link.direction in _LEADS_AHEAD:
+        lane = road_map.lanes[link.to_lane]
+        start, after = lane.line[0, :2], lane.line[1, :2]
+        yaw = math.atan2(*(after - start)[::-1].tolist())
+        yield _beside(road_map, lane, Frame(float(start[0]), float(start[1]), yaw))

@@ -122,6 +122,19 @@ class MapReport(NamedTuple):
     skipped: tuple[Skipped, ...]
 
 
+BUILDING: Final = "building"
+CONE: Final = "cone"
+TREE: Final = "tree"
+WALL: Final = "wall"
+
+
+class Obstacle(NamedTuple):
+    """A fixed thing beside the lanes, or on them; of two points it is a line without thickness."""
+
+    kind: str  # BUILDING, CONE, TREE or WALL
+    outline: Array  # float64 [N, 2]
+
+
 class RoadMap(NamedTuple):
     """A road map."""
 
@@ -134,7 +147,7 @@ class RoadMap(NamedTuple):
     geo: GeoReference
     report: MapReport
     moved_m: tuple[float, float] = (0.0, 0.0)  # taken away from the places that the files have
-    obstacles: tuple[Array, ...] = ()  # outlines of buildings and cones, float64 [N, 2]
+    obstacles: tuple[Obstacle, ...] = ()
 
     def edge(self, edge_id: str) -> int | None:
         """Return the place of an edge, None if the map has none of this name."""

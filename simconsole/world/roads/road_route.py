@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from simconsole.world.roads.lane_graph import Leg
 from simconsole.world.roads.path_fit import Corridor, fit
 from simconsole.world.roads.road_map import CROSSING, Array, Connection, Lane, RoadMap
+from simconsole.world.roads.road_turns import turns
 from simconsole.world.route import Landmark, Route, Stretch
 
 LANE_ROOM_M: Final = 0.15
@@ -38,6 +39,7 @@ def route_over(road_map: RoadMap, legs: Sequence[Leg]) -> Route:
         s += piece.length_m
     route = Route(stretches)
     route.landmarks = tuple(_landmarks(road_map, legs, route))[:_MOST_LANDMARKS]
+    route.turns = tuple(turns(road_map, legs, route))
     return route
 
 

@@ -1,7 +1,7 @@
 """Which rules of the road the vehicle breaks: red light, wrong way, off the road, speed limit, yielding. Kernels.
 
-A breach is told once it has lasted, and is over once it has been over for a while: a speed that wavers about the limit
-is one breach, not a hundred.
+Whom it strikes is told like a rule. A breach is told once it has lasted, and is over once it has been over for a
+while: a speed that wavers about the limit is one breach, not a hundred.
 """
 
 from typing import Final, NamedTuple
@@ -9,8 +9,8 @@ from typing import Final, NamedTuple
 from simconsole.values.kernels import kernel
 from simconsole.values.signals import FAR, Rules, SignalState, Situation
 
-RED_LIGHT_S: Final = 3.0
-"""So long a red light that was passed is shown, and a duty to yield that was not met."""
+SHOWN_S: Final = 3.0
+"""So long a collision is shown, a red light that was passed, and a duty to yield that was not met."""
 HINDERED_S: Final = 2.0
 """Who has the right of way and is there sooner than this has to brake hard, or to swerve."""
 SPEEDING_MPS: Final = 1.4
@@ -47,17 +47,31 @@ class Breach(NamedTuple):
 
 
 @kernel
-def judged(before: Rules, was: Situation, now: Situation, place: Place, tick_s: float) -> Rules:
-    """Return which rules are broken after a tick: those before it, the situations before and after it."""
+def judged(before: Rules, was: Situation, now: Situation, place: Place, touched: float, tick_s: float) -> Rules:
+    """Return which rules are broken after a tick.
+
+    Args:
+        before: those that were broken before it.
+        was: the situation before it.
+        now: that after it.
+        place: where the vehicle is.
+        touched: more than 0: it has touched a road user or a fixed thing in this tick.
+        tick_s: the tick's length.
+    """
+    collision, collision_s = before.collision, before.collision_s + tick_s
+    if touched > 0.0:
+        collision, collision_s = 1.0, 0.0
+    if collision == 0.0 or collision_s >= SHOWN_S:
+        collision, collision_s = 0.0, 0.0
     red, red_s = before.red_light, before.red_light_s + tick_s
     if passed_red(was, now):
         red, red_s = 1.0, 0.0
-    if red == 0.0 or red_s >= RED_LIGHT_S:
+    if red == 0.0 or red_s >= SHOWN_S:
         red, red_s = 0.0, 0.0
     failing, failing_s = before.failing_to_yield, before.failing_to_yield_s + tick_s
     if failed_to_yield(was, now):
         failing, failing_s = 1.0, 0.0
-    if failing == 0.0 or failing_s >= RED_LIGHT_S:
+    if failing == 0.0 or failing_s >= SHOWN_S:
         failing, failing_s = 0.0, 0.0
     room_m = JUNCTION_M * place.in_junction
     against = place.along < WRONG_WAY and place.in_junction == 0.0 and place.speed_mps > _MOVING_MPS
@@ -75,11 +89,13 @@ def judged(before: Rules, was: Situation, now: Situation, place: Place, tick_s: 
         before.speeding, before.speeding_s, speed > limit + SPEEDING_MPS, speed <= limit, SPEEDING_S, tick_s
     )
     return Rules(
+        collision=collision,
         red_light=red,
         wrong_way=wrong_way.is_broken,
         off_road=off.is_broken,
         speeding=speeding.is_broken,
         failing_to_yield=failing,
+        collision_s=collision_s,
         red_light_s=red_s,
         wrong_way_s=wrong_way.against_s,
         off_road_s=off.against_s,

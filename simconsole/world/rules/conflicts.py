@@ -51,6 +51,7 @@ class Watched(NamedTuple):
     inside: Array  # 1: behind their own line, whatever their light shows
     signal: Array  # that holds them back before it, -1: none
     link: Array
+    ring: Array  # 1: on a roundabout before the meeting: who indicates to the right leaves it there
 
 
 class Entry(NamedTuple):
@@ -158,7 +159,7 @@ class _Ways:
         if not len(met):
             return None
         begins, ends = float(met[0]) * _STEP_M, float(met[-1] + 1) * _STEP_M
-        found = [_rows(ahead, begins, ends - begins, (goes_first, 1.0, -1.0, -1.0))]
+        found = [_rows(ahead, begins, ends - begins, (goes_first, 1.0, -1.0, -1.0, 0.0))]
         if goes_first:
             held = (1.0, 0.0, float(other.signal), float(other.link))
             found += self._behind(other.from_lane, begins, ends - begins, held)
@@ -166,19 +167,20 @@ class _Ways:
 
     def _behind(self, lane: int, to_m: float, zone_m: float, held: tuple[float, ...]) -> list[Array]:
         """Return the points of a lane that ends `to_m` before the meeting, and of those that lead there."""
-        found, todo, seen = [], [(lane, to_m)], {lane}
+        found, todo, seen, lanes = [], [(lane, to_m)], {lane}, self._map.lanes
         while todo:
             lane, end_m = todo.pop()
             points = _points(self._map.lanes[lane].line[:, :2])
             length = self._map.lanes[lane].length_m
-            found.append(_rows(points, end_m + length, zone_m, held))
+            on_ring = (float(lanes[lane].edge in self._rings),)
+            found.append(_rows(points, end_m + length, zone_m, held + on_ring))
             if end_m + length < SEEN_M:
                 for one in self._to[lane]:
-                    chain = end_m + length
+                    chain, on_ring = end_m + length, (float(lanes[one.from_lane].edge in self._rings),)
                     for via in reversed(one.via):
                         inside = _points(self._map.lanes[via].line[:, :2])
                         way = self._map.lanes[via].length_m
-                        found.append(_rows(inside, chain + way, zone_m, held))
+                        found.append(_rows(inside, chain + way, zone_m, held + on_ring))
                         chain += way
                     if one.from_lane not in seen and one.signal < 0:
                         seen.add(one.from_lane)
@@ -193,9 +195,9 @@ def _rows(points: Array, begins_m: float, zone_m: float, held: tuple[float, ...]
     direction[-1] = direction[-2]
     length = np.maximum(np.hypot(*direction.T), 1e-9)
     count = len(points)
-    first, inside, signal, link = (np.full(count, float(value)) for value in held)
+    first, inside, signal, link, ring = (np.full(count, float(value)) for value in held)
     table = np.stack(
-        (points[:, 0], points[:, 1], *(direction.T / length), to_m, to_m + zone_m, first, inside, signal, link)
+        (points[:, 0], points[:, 1], *(direction.T / length), to_m, to_m + zone_m, first, inside, signal, link, ring)
     )
     return table[:, (to_m < SEEN_M) & (to_m + zone_m > -MERGED_M)]
 

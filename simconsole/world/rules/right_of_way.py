@@ -1,11 +1,12 @@
 """Whom a vehicle on a route has to let pass: people on crossings, and vehicles with the right of way at junctions.
 
-Seen from where others are and how they move: nobody knows where they want to go. Who is on a crossing, or steps onto
-it, is let pass until they are beyond the vehicle's lane. A vehicle with the right of way is let pass if it comes within
-the critical headway (`conflicts.CRITICAL_S`); who is inside the junction is let out. Vehicles that have stood for a
-while before their line let others go.
+Seen from where others are and how they move; where they want to go only their indicators tell. Who is on a crossing, or
+steps onto it, is let pass until they are beyond the vehicle's lane. A vehicle with the right of way is let pass if it
+comes within the critical headway (`conflicts.CRITICAL_S`), unless it is on a roundabout and indicates that it leaves
+it; who is inside the junction is let out. Vehicles that have stood for a while before their line let others go.
 """
 
+from bisect import bisect_left
 from collections.abc import Callable
 from typing import Final, NamedTuple
 
@@ -70,7 +71,7 @@ class RightOfWay:
         """Take where the route gives way."""
         lines = [(foot.line_m, foot) for foot in duties.crossings] + [(one.line_m, one) for one in duties.entries]
         self._lines: list[tuple[float, Foot | Entry]] = sorted(lines, key=lambda line: line[0])
-        self._at = np.array([line for line, _ in self._lines])
+        self._at = [line for line, _ in self._lines]
         self._stood: dict[float, float] = {}
         self._seen: dict[int, float] = {}  # when each duty was seen last
         self._hindered: dict[int, float] = {}
@@ -78,7 +79,7 @@ class RightOfWay:
 
     def owed(self, own: Motion, users: Array, light: LightOf) -> Owed:
         """Return what is owed now; `users` are the others, float64 [users, FIELDS of RoadUser]."""
-        first, end = np.searchsorted(self._at, (own.front_m - BEHIND_M, own.front_m + AHEAD_M)).tolist()
+        first, end = bisect_left(self._at, own.front_m - BEHIND_M), bisect_left(self._at, own.front_m + AHEAD_M)
         near = range(first, end)
         for gone in [line for line in self._seen if line not in near]:
             self._forget(gone)
@@ -152,13 +153,15 @@ def _vehicle_first(
     protected = own_light == SignalState.PROTECTED_MOVEMENT_ALLOWED
     reaches_s = max(left_m, 0.0) / max(speed_mps, _SLOWEST_MPS)
     hindered_s = None
-    for user, place in _on_ways(entry.watched, vehicles):
-        way = entry.watched
+    way = entry.watched
+    found = _on_ways(way, vehicles)
+    leaving = {user for user, place in found if way.ring[place] > 0.0 and vehicles[user, 10] < 0.0}
+    for user, place in found:
         speed, half = float(vehicles[user, 5]), 0.5 * float(vehicles[user, 6])
         inside = way.inside[place] > 0.0
         goes_first = way.first[place] > 0.0 and not protected
         held = not inside and (standing[user] or _is_held(way, place, light))
-        if held or not (goes_first or inside):
+        if held or user in leaving or not (goes_first or inside):
             continue
         left = float(way.to_m[place]) - half
         comes_s = max(left, 0.0) / max(speed, _SETS_OFF_MPS)
@@ -171,6 +174,10 @@ def _vehicle_first(
 
 def _on_ways(watched: Watched, vehicles: Array) -> list[list[int]]:
     """Return (vehicle, point) for each that is on one of the ways: on each way the point that is nearest to it."""
+    reach = np.hypot(np.ptp(watched.x_m), np.ptp(watched.y_m)) + _BESIDE_M
+    far = np.hypot(vehicles[:, 2] - watched.x_m[0], vehicles[:, 3] - watched.y_m[0]) > reach
+    if far.all():
+        return []
     dx = vehicles[:, None, 2] - watched.x_m[None, :]
     dy = vehicles[:, None, 3] - watched.y_m[None, :]
     along = dx * watched.cosine + dy * watched.sine

@@ -6,6 +6,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from simconsole.values.kernels import Row
+from simconsole.world.obstacles.sides import NOBODY, Body, FixedThings, fixed_things
 from simconsole.world.roads.lane_graph import Leg
 from simconsole.world.roads.lane_index import LaneArrays, LaneIndex, nearest_segment
 from simconsole.world.roads.road_map import ROAD, GeoReference, MapReport, RoadMap, active
@@ -47,6 +48,7 @@ class RoadRules(NamedTuple):
     shown: Row  # [phases of all approaches, 2]: `SignalState`, ticks after the phase's end until it changes
     timetable: Timetable
     front_m: Row  # [1]: from base_link to the vehicle's front
+    things: FixedThings
 
 
 EDGE, LENGTH, HALF_WIDTH, LIMIT, IN_JUNCTION, APPROACH, BEYOND = range(len(LaneRow._fields))
@@ -54,8 +56,12 @@ SIGNAL, SHOWN = range(len(ApproachRow._fields))
 _NONE: Final = -1.0
 
 
-def road_rules(road_map: RoadMap, legs: Sequence[Leg], tick_hz: int, front_m: float) -> RoadRules:
-    """Return the rules of a map for a vehicle whose front is `front_m` ahead of base_link and who takes this way."""
+def road_rules(road_map: RoadMap, legs: Sequence[Leg], tick_hz: int, front_m: float, body: Body = NOBODY) -> RoadRules:
+    """Return the rules of a map for a vehicle whose front is `front_m` ahead of base_link and who takes this way.
+
+    Raises:
+        ValueError: the vehicle is too long to look for fixed things.
+    """
     drivable = [place for place, lane in enumerate(road_map.lanes) if lane.drivable]
     ahead = ahead_of_lanes(road_map, legs)
     rows: dict[Approach, float] = {}
@@ -89,6 +95,7 @@ def road_rules(road_map: RoadMap, legs: Sequence[Leg], tick_hz: int, front_m: fl
         shown=np.array(shown, dtype=np.float64).reshape(-1, 2),
         timetable=timetable_of(road_map.signals, tick_hz),
         front_m=np.array((front_m,)),
+        things=fixed_things(road_map.obstacles, road_map.lanes, body),
     )
 
 

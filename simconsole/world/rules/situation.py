@@ -6,7 +6,7 @@ Time to collision as of Hayward: Near-miss determination through use of a scale 
 
 from typing import Final, NamedTuple
 
-from simconsole.values.kernels import Row, kernel
+from simconsole.values.kernels import Row, kernel, stage
 from simconsole.values.layout import read, write
 from simconsole.values.signals import FAR, AheadInput, SignalState, Situation, VehicleState
 from simconsole.values.state_vector import LAYOUT
@@ -52,7 +52,7 @@ def time_to_collision(ahead: AheadInput, speed_mps: float) -> float:
     return ahead.lead_gap_m / closing_mps
 
 
-@kernel
+@stage
 def look_around(previous: Row, row: Row, rules: RoadRules, tick_s: float) -> None:
     """Write situation and broken rules after a tick into `row`, whose vehicle has moved."""
     vehicle = read(row, LAYOUT.vehicle)
@@ -81,7 +81,8 @@ def look_around(previous: Row, row: Row, rules: RoadRules, tick_s: float) -> Non
     situation = situation_at(found, before.tick + 1.0, rules, lead, tick_s)
     place = place_of(found, heading, vehicle, rules)
     write(row, LAYOUT.situation, situation)
-    write(row, LAYOUT.rules, judged(read(previous, LAYOUT.rules), before, situation, place, tick_s))
+    touched = read(row, LAYOUT.impact).first_touch + read(row, LAYOUT.obstacle).touches
+    write(row, LAYOUT.rules, judged(read(previous, LAYOUT.rules), before, situation, place, touched, tick_s))
 
 
 @kernel

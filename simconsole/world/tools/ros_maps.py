@@ -95,7 +95,15 @@ def write_ros_map(profile: ArenaProfile, folder: Path, name: str, resolution_m: 
     Raises:
         ProfileError: a file is there already or cannot be written, or there would be too many cells.
     """
-    grid = grid_of(profile, resolution_m)
+    return write_grid(grid_of(profile, resolution_m), folder, name)
+
+
+def write_grid(grid: Grid, folder: Path, name: str) -> tuple[Path, Path]:
+    """Write an occupancy grid as NAME.yaml and NAME.pgm; return both.
+
+    Raises:
+        ProfileError: a file is there already or cannot be written.
+    """
     described, image = folder / f"{name}.yaml", folder / f"{name}.pgm"
     for path in (described, image):
         if path.exists():
@@ -105,7 +113,7 @@ def write_ros_map(profile: ArenaProfile, folder: Path, name: str, resolution_m: 
         shades[grid.cells == state] = shade
     rows, columns = grid.cells.shape
     text = (
-        f"image: {image.name}\nmode: trinary\nresolution: {resolution_m:g}\n"
+        f"image: {image.name}\nmode: trinary\nresolution: {grid.resolution_m:g}\n"
         f"origin: [{grid.x_m:.6f}, {grid.y_m:.6f}, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.25\n"
     )
     try:

@@ -5,7 +5,7 @@ from typing import Final, NamedTuple
 
 from simconsole.values.kernels import Row, kernel
 from simconsole.world.traffic.following import FAR_M
-from simconsole.world.traffic.network import Network
+from simconsole.world.traffic.network import Network, segment_to
 from simconsole.world.traffic_columns import COSINE, COUNT, LANES, LENGTH, SINE, SPEED, WIDTH, X, Y
 
 MARGIN_M: Final = 0.35
@@ -57,16 +57,20 @@ def nearest_ahead(
         if start > s_m + horizon_m or start - s_m - body.half_length_m > gap:
             break
         if count > 0 and end > s_m:
-            free = 0.0  # up to here along the lane nobody can be in the way
-            for row in range(net.point_starts[lane], net.point_starts[lane + 1] - 1):
-                if start + net.points[row + 1, 2] <= s_m or net.points[row + 1, 2] < free:
+            row, last = segment_to(net, lane, net.point_starts[lane], s_m - start), net.point_starts[lane + 1] - 2
+            while row <= last:
+                reach = net.points[row + 1, 2]
+                if start + reach <= s_m:
+                    row += 1
                     continue
                 free = net.points[row, 2] + _room(net.points[row, 0], net.points[row, 1], body, boxes, near, count)
-                if net.points[row + 1, 2] < free:
-                    continue
-                found = _on_segment(net, row, s_m - start, body, boxes, near, count)
-                if found.gap_m < gap:
-                    gap, speed = found.gap_m, found.speed_mps
+                if reach < free:  # up to there along the lane nobody can be in the way
+                    row = segment_to(net, lane, row + 1, free) if net.points[last + 1, 2] >= free else last + 1
+                else:
+                    found = _on_segment(net, row, s_m - start, body, boxes, near, count)
+                    if found.gap_m < gap:
+                        gap, speed = found.gap_m, found.speed_mps
+                    row += 1
         start = end
     return Ahead(gap, speed)
 

@@ -1,9 +1,9 @@
 """Who sets off at green is let go, and who has waited long is let in: nobody waits at a junction without end."""
 
+from collections.abc import Sequence
 from typing import Final
 
 from simconsole.world import traffic_columns as at
-from simconsole.world.roads.road_map import Array
 from simconsole.world.traffic.junctions import GIVE_WAY, GO
 from simconsole.world.traffic.network import Network, Numbers
 
@@ -24,19 +24,24 @@ class Courtesy:
         self._net, self._lights, self._kept_free = net, lights, kept_free
         self._stood_s = self._green_s = 0.0
 
-    def step(self, box: Array, period_s: float) -> None:
-        """Look at the vehicle's box, float64 [BOX], once in a period."""
-        self._kept_free[:] = 0
-        lane = int(box[at.LANE])
-        waits = box[at.LENGTH] > 0.0 and lane >= 0 and abs(box[at.SPEED]) < _STANDS_MPS
-        if waits:
-            left_m = self._net.lengths_m[lane] - box[at.ALONG] - 0.5 * box[at.LENGTH]
-            waits = bool(left_m < _AT_LINE_M)
-        self._stood_s = self._stood_s + period_s if waits else 0.0
-        own = self._net.origins == lane
+    def step(self, box: Sequence[float], period_s: float) -> None:
+        """Look at the vehicle's box, BOX values, once in a period."""
+        if self._stood_s:
+            self._kept_free[:] = 0
+        if not self._waits(box):
+            self._stood_s = self._green_s = 0.0
+            return
+        self._stood_s += period_s
+        own = self._net.origins == int(box[at.LANE])
         green = own & (self._lights == GO)
-        self._green_s = self._green_s + period_s if waits and green.any() else 0.0
+        self._green_s = self._green_s + period_s if green.any() else 0.0
         if 0.0 < self._green_s < SETS_OFF_S:
             self._kept_free[green] = 1
         if self._stood_s % (WAITED_S + KEPT_S) >= WAITED_S:
             self._kept_free[own & (self._lights <= GIVE_WAY)] = 1
+
+    def _waits(self, box: Sequence[float]) -> bool:
+        lane = int(box[at.LANE])
+        if box[at.LENGTH] == 0.0 or lane < 0 or abs(box[at.SPEED]) >= _STANDS_MPS:
+            return False
+        return bool(self._net.lengths_m[lane] - box[at.ALONG] - 0.5 * box[at.LENGTH] < _AT_LINE_M)

@@ -16,7 +16,7 @@ STANDING_GAP_M: Final = 2.0
 EMERGENCY_MPS2: Final = 8.0
 _TWICE_ROOT: Final = 2.0 * 1.224744871391589  # 2 sqrt(ACCELERATION_MPS2 * BRAKING_MPS2)
 _SLOWING_MPS2: Final = 2.5  # a lower limit alone makes nobody brake harder
-_LEAST_GAP_M: Final = 0.1
+NEAREST_M: Final = 0.1
 FAR_M: Final = 1e6
 
 
@@ -29,17 +29,34 @@ def acceleration(speed_mps: float, desired_mps: float, gap_m: float, leader_mps:
         free = -_SLOWING_MPS2
     if gap_m >= FAR_M:
         return free
-    dynamic = speed_mps * time_gap_s + speed_mps * (speed_mps - leader_mps) / _TWICE_ROOT
-    if dynamic < 0.0:
-        dynamic = 0.0
-    gap = gap_m
-    if gap < _LEAST_GAP_M:
-        gap = _LEAST_GAP_M
-    share = (STANDING_GAP_M + dynamic) / gap
+    share = gap_share(gap_m, speed_mps, leader_mps, STANDING_GAP_M, time_gap_s, _TWICE_ROOT)
     found = free - ACCELERATION_MPS2 * share * share
     if found < -EMERGENCY_MPS2:
         found = -EMERGENCY_MPS2
     return found
+
+
+@kernel
+def gap_share(
+    gap_m: float, speed_mps: float, leader_mps: float, standing_m: float, time_gap_s: float, twice_root_mps2: float
+) -> float:
+    """Return the gap that is wanted behind a leader, as a share of the one there is.
+
+    Args:
+        gap_m: bumper to bumper.
+        speed_mps: the own speed.
+        leader_mps: the leader's along the own way.
+        standing_m: the gap to a leader that stands.
+        time_gap_s: what is added to it at a constant speed.
+        twice_root_mps2: twice the root of the product of acceleration and comfortable deceleration.
+    """
+    dynamic = speed_mps * time_gap_s + speed_mps * (speed_mps - leader_mps) / twice_root_mps2
+    if dynamic < 0.0:
+        dynamic = 0.0
+    gap = gap_m
+    if gap < NEAREST_M:
+        gap = NEAREST_M
+    return (standing_m + dynamic) / gap
 
 
 @kernel

@@ -22,6 +22,12 @@ class LeadDriver:
         self._s_m = start_m + profile.gap_m
         self._speed_mps = 0.0
         self._time_s = 0.0
+        self._crashed = False
+
+    def crash(self, change_mps: float) -> None:
+        """Change its speed by a collision; from now on it only comes to rest."""
+        self._speed_mps = max(0.0, self._speed_mps + change_mps)
+        self._crashed = True
 
     def step(self, period_s: float) -> Box:
         """Drive on for a period; return where the vehicle is then."""
@@ -29,6 +35,8 @@ class LeadDriver:
         for one in self._profile.speeds:
             if self._time_s >= one.from_s:
                 wanted = one.speed_kmh * MPS_PER_KMH
+        if self._crashed:
+            wanted = 0.0
         if not self._route.closed and self._s_m >= self._route.length_m:
             wanted = 0.0
         before = self._speed_mps

@@ -89,7 +89,7 @@ class Leaders:
         """
         rows: Any = users.tolist() if self._lists else users
         gap_m, speed_mps, self._guess = self._search(self._way, self._guess, *ego, rows)
-        return NO_AHEAD._replace(lead_gap_m=gap_m, lead_speed_mps=speed_mps)
+        return AheadInput(gap_m, speed_mps, NO_AHEAD.yield_m, NO_AHEAD.yield_s)
 
 
 def _way(route: Route | None, lists: bool) -> Way:

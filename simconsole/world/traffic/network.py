@@ -6,11 +6,13 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from simconsole.values.kernels import kernel
 from simconsole.world.roads.lane_graph import LaneGraph
 from simconsole.world.roads.road_map import Array, Connection, RoadMap
 
 Numbers = NDArray[np.int64]
 
+_SIDES: Final = {"l": 1, "t": 1, "r": -1}  # by SUMO's directions
 CHANGING_M: Final = 120.0
 """A lane that ends is used only if it is this long: time to find a gap in the lane beside it."""
 
@@ -37,6 +39,7 @@ class Network(NamedTuple):
     firsts: Numbers  # those of them that go first
     first_starts: Numbers
     origins: Numbers  # the lane that a connection begins on
+    turns: Numbers  # to which side vehicles indicate: 1 left, -1 right
 
 
 def network(road_map: RoadMap) -> Network:
@@ -78,7 +81,39 @@ def network(road_map: RoadMap) -> Network:
         firsts=firsts,
         first_starts=first_starts,
         origins=np.array([one.from_lane for one in connections], np.int64),
+        turns=_turns(road_map),
     )
+
+
+def _turns(road_map: RoadMap) -> Numbers:
+    """Return to which side vehicles indicate on each connection: on a roundabout only who leaves it does, to the right.
+
+    Straßenverkehrs-Ordnung, sections 8 and 9.
+    """
+    rings = {edge for ring in road_map.roundabouts for edge in ring}
+    found = np.zeros(len(road_map.connections), np.int64)
+    for place, one in enumerate(road_map.connections):
+        if road_map.lanes[one.to_lane].edge in rings:
+            continue
+        leaves = road_map.lanes[one.from_lane].edge in rings
+        found[place] = -1 if leaves else _SIDES.get(one.direction.lower(), 0)
+    return found
+
+
+@kernel
+def segment_to(net: Network, lane: int, first: int, s_m: float) -> int:
+    """Return the first segment of a lane, from row `first` of its points on, that ends at `s_m` or behind it.
+
+    It is the lane's last one where none does.
+    """
+    low, high = first, net.point_starts[lane + 1] - 2
+    while low < high:
+        middle = (low + high) // 2
+        if net.points[middle + 1, 2] < s_m:
+            low = middle + 1
+        else:
+            high = middle
+    return int(low)
 
 
 def _without_traps(

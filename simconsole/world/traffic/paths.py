@@ -4,7 +4,7 @@ import math
 from typing import Final, NamedTuple
 
 from simconsole.values.kernels import Row, kernel
-from simconsole.world.traffic.network import Network
+from simconsole.world.traffic.network import Network, segment_to
 from simconsole.world.traffic_columns import CONNECTIONS, COUNT, GRANTS, LANES, SLOTS, drawn
 
 AHEAD_M: Final = 220.0
@@ -75,9 +75,7 @@ def place_at(net: Network, path: Row, s_m: float) -> Place:
         s_m -= net.lengths_m[path[LANES + slot]]
         slot += 1
     lane = path[LANES + slot]
-    row, end = net.point_starts[lane], net.point_starts[lane + 1] - 2
-    while row < end and s_m > net.points[row + 1, 2]:
-        row += 1
+    row = segment_to(net, lane, net.point_starts[lane], s_m)
     x, y = net.points[row, 0], net.points[row, 1]
     dx, dy = net.points[row + 1, 0] - x, net.points[row + 1, 1] - y
     length = math.sqrt(dx * dx + dy * dy)

@@ -30,6 +30,8 @@ class RoadUser(NamedTuple):
     length_m: float
     width_m: float
     height_m: float
+    z_m: float = 0.0  # of the ground below its middle
+    turn_indicators: float = 0.0  # 1 left, -1 right, 0 off
 
 
 class Box(NamedTuple):
@@ -54,7 +56,10 @@ CAPACITY: Final = 128
 """Road users that a record in shared memory has room for."""
 FIELDS: Final = len(RoadUser._fields)
 RECORD_WIDTH: Final = 1 + CAPACITY * FIELDS
+_FIRST_FIELDS: Final = 9  # of tables from before there were height and indicators
 NOBODY: Final[Array] = np.zeros((0, FIELDS))
+NOBODY_AT_ALL: Final = RoadUsersAt(0, NOBODY)
+"""Before the first step of traffic, and where there is none."""
 ENCODING: Final = f"float64[{FIELDS}]"
 """Of road users in a log: little-endian, one row a user."""
 
@@ -69,15 +74,19 @@ def to_bytes(rows: Array) -> bytes:
     return rows.astype("<f8", copy=False).tobytes()
 
 
-def from_bytes(content: bytes) -> Array:
-    """Return the table of a message.
+def from_bytes(content: bytes, encoding: str = ENCODING) -> Array:
+    """Return the table of a message; fields that its encoding does not have yet are 0.
 
     Raises:
         ValueError: it is none.
     """
-    if len(content) % (8 * FIELDS) or len(content) > 8 * FIELDS * CAPACITY:
-        raise ValueError(f"{len(content)} bytes: up to {CAPACITY} road users of {8 * FIELDS}")
-    return np.frombuffer(content, "<f8").astype(np.float64).reshape(-1, FIELDS)
+    fields = next((count for count in (FIELDS, _FIRST_FIELDS) if encoding == f"float64[{count}]"), 0)
+    if not fields:
+        raise ValueError(f"encoding {encoding!r}: {ENCODING}")
+    if len(content) % (8 * fields) or len(content) > 8 * fields * CAPACITY:
+        raise ValueError(f"{len(content)} bytes: up to {CAPACITY} road users of {8 * fields}")
+    rows = np.frombuffer(content, "<f8").astype(np.float64).reshape(-1, fields)
+    return np.pad(rows, ((0, 0), (0, FIELDS - fields)))
 
 
 def to_record(rows: Array) -> NDArray[np.float64]:

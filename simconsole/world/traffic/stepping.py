@@ -1,7 +1,7 @@
 """One step of all vehicles: paths, grants, accelerations, positions, changes of lane, in this order."""
 
 import math
-from typing import Final
+from typing import Final, NamedTuple
 
 from simconsole.values.kernels import Row, kernel
 from simconsole.values.trigonometry import atan2
@@ -30,6 +30,7 @@ from simconsole.world.traffic_columns import (
     CONNECTIONS,
     COSINE,
     COUNT,
+    CRASHED,
     LANES,
     LENGTH,
     OFFSET,
@@ -45,6 +46,9 @@ from simconsole.world.traffic_columns import (
     Y,
 )
 
+CRASHED_MPS2: Final = 6.0
+INDICATED_M: Final = 40.0
+"""So far before a junction vehicles indicate where they turn."""
 VAN_M: Final = 5.2  # longer vehicles are vans
 _CONSIDER_EVERY: Final = 16  # steps; a vehicle's turn comes by its number
 _LOOK_EVERY: Final = 2  # steps: looking ahead is most of the work, and people take longer to react
@@ -70,9 +74,10 @@ def step_traffic(
         period_s: its length.
     """
     count = len(values)
-    turn.granted[:] = turn.kept_free
+    for connection in range(len(turn.granted)):
+        turn.granted[connection] = turn.kept_free[connection]
     for own in range(count):
-        boxes[own, :BOX] = values[own, :BOX]
+        show_box(boxes[own], values[own])
         turn.lines[own, SLOT] = -1.0
         turn.lines[own, 1] = -1.0
         if values[own, LENGTH] > 0.0:
@@ -87,15 +92,25 @@ def step_traffic(
     for own in range(count):
         if values[own, LENGTH] > 0.0 and (step + own) % _LOOK_EVERY == 0:
             values[own, ACCELERATION] = _wish(net, paths[own], values, own, boxes, turn, near)
+        if values[own, CRASHED] > 0.0:
+            values[own, ACCELERATION] = -CRASHED_MPS2
     for own in range(count):
         if values[own, LENGTH] > 0.0:
             _move(net, paths[own], values[own], period_s)
             if _has_left(net, paths[own], values[own]):
                 values[own, LENGTH] = 0.0
-            boxes[own, :BOX] = values[own, :BOX]
+            show_box(boxes[own], values[own])
     for own in range(count):
-        if values[own, LENGTH] > 0.0 and (step + own) % _CONSIDER_EVERY == 0 and rested(values[own]):
+        asks = values[own, LENGTH] > 0.0 and values[own, CRASHED] == 0.0
+        if asks and (step + own) % _CONSIDER_EVERY == 0 and rested(values[own]):
             consider(net, paths, boxes, values, own)
+
+
+@kernel
+def show_box(box: Row, vehicle: Row) -> None:
+    """Copy what others see of a vehicle."""
+    for column in range(BOX):
+        box[column] = vehicle[column]
 
 
 @kernel
@@ -176,11 +191,61 @@ def _has_left(net: Network, path: Row, vehicle: Row) -> bool:
 
 
 @kernel
-def list_users(boxes: Row, ids: Row, ego: int, rows: Row) -> int:
-    """Write all boxes on the road but the ego's as road users into `rows`, float64 [boxes, FIELDS]; return how many."""
+def indicators(net: Network, path: Row, vehicle: Row) -> float:
+    """Return where a vehicle indicates to: 1 left, -1 right, 0 nowhere.
+
+    To where it changes lanes, else to where it leaves the junction that is next, or that it is in.
+    """
+    if vehicle[CHANGED] < 1.0:
+        return 1.0 if vehicle[OFFSET] < 0.0 else -1.0
+    front, rear = vehicle[S] + 0.5 * vehicle[LENGTH], vehicle[S] - 0.5 * vehicle[LENGTH]
+    end = 0.0
+    for slot in range(path[COUNT]):
+        end += net.lengths_m[path[LANES + slot]]
+        connection = path[CONNECTIONS + slot]
+        if connection >= 0 and rear < end + net.ways_m[connection]:
+            return float(net.turns[connection]) if end - front < INDICATED_M else 0.0
+    return 0.0
+
+
+class Stepped(NamedTuple):
+    """What a step has brought."""
+
+    users: int  # how many are in the table
+    gone: int  # how many vehicles are on no road
+
+
+@kernel
+def step_and_list(
+    net: Network,
+    values: Row,
+    paths: Row,
+    boxes: Row,
+    turn: Turn,
+    near: Row,
+    ids: Row,
+    users: Row,
+    step: int,
+    period_s: float,
+) -> Stepped:
+    """Do as `step_traffic` and `list_users`, in one call: each array that Python hands over takes its time."""
+    step_traffic(net, values, paths, boxes, turn, near, step, period_s)
+    gone = 0
+    for own in range(len(values)):
+        if values[own, LENGTH] == 0.0:
+            gone += 1
+    return Stepped(list_users(net, values, paths, boxes, ids, users), gone)
+
+
+@kernel
+def list_users(net: Network, values: Row, paths: Row, boxes: Row, ids: Row, rows: Row) -> int:
+    """Write all boxes on the road but the ego's as road users into `rows`, float64 [boxes, FIELDS]; return how many.
+
+    The ego's box is the first that is no vehicle of traffic.
+    """
     count = 0
     for row in range(len(boxes)):
-        if row == ego or boxes[row, LENGTH] <= 0.0:
+        if row == len(values) or boxes[row, LENGTH] <= 0.0:
             continue
         kind, height = float(RoadUserKind.CAR), 1.5
         if boxes[row, LENGTH] > VAN_M:
@@ -194,5 +259,6 @@ def list_users(boxes: Row, ids: Row, ego: int, rows: Row) -> int:
         rows[count, 5] = boxes[row, SPEED]
         rows[count, 6], rows[count, 7] = boxes[row, LENGTH], boxes[row, WIDTH]
         rows[count, 8] = height
+        rows[count, 10] = indicators(net, paths[row], values[row]) if row < len(values) else 0.0
         count += 1
     return count

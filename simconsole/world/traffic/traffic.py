@@ -6,11 +6,13 @@ from typing import Any, Final
 import numpy as np
 
 from simconsole.profiles.traffic import LeadVehicle, TrafficProfile
+from simconsole.values.height_field import HeightField, spline_at
+from simconsole.values.kernels import Row, kernel
 from simconsole.values.trigonometry import direction
 from simconsole.world import traffic_columns as at
 from simconsole.world.people.people import People
 from simconsole.world.people.walking import Others
-from simconsole.world.roads.lane_index import LaneIndex, nearest_segment
+from simconsole.world.roads.lane_index import HEADING_M, LaneArrays, LaneIndex, nearest_segment
 from simconsole.world.roads.road_map import Array, RoadMap
 from simconsole.world.route import Route
 from simconsole.world.traffic.courtesy import Courtesy
@@ -21,7 +23,7 @@ from simconsole.world.traffic.parking import parked_cars
 from simconsole.world.traffic.placement import CLEAR_M, Placement
 from simconsole.world.traffic.road_users import FIELDS, Box
 from simconsole.world.traffic.signal_states import Lights, SignalStates, by_programs
-from simconsole.world.traffic.stepping import list_users, step_traffic
+from simconsole.world.traffic.stepping import Stepped, list_users, step_and_list
 
 Execution = Callable[[Any], Any]
 EGO_CLEAR_M: Final = 30.0
@@ -40,6 +42,7 @@ class Traffic:
         route: Route | None = None,
         ego: Box | None = None,
         signals: SignalStates | None = None,
+        ground: HeightField | None = None,
     ) -> None:
         """Put the vehicles on the road.
 
@@ -50,13 +53,15 @@ class Traffic:
             route: what a lead vehicle drives on.
             ego: the console's vehicle at the start.
             signals: what the map's signals show; their own programs unless it says otherwise.
+            ground: its heights; the ground is level without it.
         """
         self.period_s = 0.001 * profile.period_ms
-        self._net = network(road_map)
+        self._net, self._ground = network(road_map), ground
         self._lights = Lights(road_map, signals or by_programs(road_map))
         cars = [place for place, lane in enumerate(road_map.lanes) if lane.drivable]
-        self._index = LaneIndex(road_map.lanes, cars, execution(nearest_segment))
-        self._step_kernel, self._list_kernel = execution(step_traffic), execution(list_users)
+        self._lanes = LaneIndex(road_map.lanes, cars, nearest_segment).arrays
+        self._step_kernel, self._list_kernel = execution(step_and_list), execution(list_users)
+        self._put_box = execution(put_box)
         self._rng = np.random.default_rng(profile.seed)
         self._steps = 0
         count = profile.vehicles
@@ -99,23 +104,58 @@ class Traffic:
         """
         self._turn.lights[:] = self._lights.at(self._steps * self.period_s)
         self._see_others(ego, self.period_s)
-        self._courtesy.step(self._boxes[self._ego], self.period_s)
+        self._courtesy.step(self._boxes[self._ego].tolist(), self.period_s)
         self._let_people_walk(self.period_s)
-        self._advance(len(self._values))
+        stepped = self._advance(len(self._values))
         self._steps += 1
-        self._let_others_come()
-        return self.road_users()
+        if stepped.gone:
+            self._let_others_come()
+            return self.road_users()
+        return self._table(stepped.users)
+
+    def push(self, number: float, change_mps: float) -> None:
+        """Change the speed of road user `number`, who has collided and from now on only comes to rest.
+
+        Vehicles move along their way alone: what would push them aside their tyres take. People fall where they are.
+        """
+        row = int(np.flatnonzero((self._ids == number) & (np.arange(len(self._ids)) != self._ego))[0])
+        if row < len(self._values):
+            self._values[row, at.SPEED] = max(0.0, self._values[row, at.SPEED] + change_mps)
+            self._values[row, at.CRASHED] = 1.0
+        elif row == self._lead and self._driver is not None:
+            self._driver.crash(change_mps)
+        elif row >= self._first_person:
+            self._people.fall(row - self._first_person)
 
     def road_users(self) -> Array:
         """Return where everybody is, float64 [users, FIELDS] as `RoadUser`: vehicles, those parked, people."""
-        count = self._list_kernel(self._boxes, self._ids, self._ego, self._users)
-        return self._users[: int(count)].copy()
+        return self._table(self._list_kernel(self._net, self._values, self._paths, self._boxes, self._ids, self._users))
 
-    def _advance(self, count: int) -> None:
+    def _table(self, count: int) -> Array:
+        """Return the first `count` of the users that were listed."""
+        found = self._users[:count].copy()
+        if self._ground is not None:
+            found[:, 9] = spline_at(self._ground, 0, found[:, 2], found[:, 3])
+        return found
+
+    def _advance(self, count: int) -> Stepped:
         """Run the kernel on the first `count` vehicles: all of them, or none."""
-        turn = self._turn._replace(lines=self._turn.lines[:count])
-        values, paths = self._values[:count], self._paths[:count]
-        self._step_kernel(self._net, values, paths, self._boxes, turn, self._near, self._steps, self.period_s)
+        values, paths, turn = self._values, self._paths, self._turn
+        if count < len(values):
+            values, paths, turn = values[:count], paths[:count], turn._replace(lines=turn.lines[:count])
+        found: Stepped = self._step_kernel(
+            self._net,
+            values,
+            paths,
+            self._boxes,
+            turn,
+            self._near,
+            self._ids,
+            self._users,
+            self._steps,
+            self.period_s,
+        )
+        return found
 
     def _see_others(self, ego: Box | None, period_s: float) -> None:
         """Write the boxes of the ego and of the lead vehicle."""
@@ -123,16 +163,13 @@ class Traffic:
         for row, box in ((self._ego, ego), (self._lead, lead)):
             if box is None:
                 self._boxes[row, at.LENGTH] = 0.0
-                continue
-            lane = self._index.locate(box.x_m, box.y_m, box.yaw_rad)
-            heading = direction(box.yaw_rad)
-            self._boxes[row] = (
-                *(box.x_m, box.y_m, heading.cos, heading.sin, box.speed_mps, box.length_m, box.width_m),
-                *((-1.0, 0.0) if lane.lane is None or not lane.on_lane else (float(lane.lane), lane.s_m)),
-            )
+            else:
+                self._put_box(self._lanes, self._net.widths_m, self._boxes[row], box)
 
     def _let_people_walk(self, period_s: float) -> None:
         """Move those on foot on by a period; who comes anew is somebody else."""
+        if not len(self._people.rows):
+            return
         vehicles = slice(0, self._first_person)
         others = Others(self._boxes[vehicles], self._values, self._paths, self._net.lengths_m)
         for place in self._people.step(self._lights.shown or (), others, period_s):
@@ -159,6 +196,23 @@ class Traffic:
         clear[self._ego] = EGO_CLEAR_M
         on_road = boxes[:, at.LENGTH] > 0.0
         return np.column_stack((boxes[on_road, at.X], boxes[on_road, at.Y], clear[on_road]))
+
+
+@kernel
+def put_box(lanes: LaneArrays, widths_m: Row, row: Row, box: Box) -> None:
+    """Write a box that is no vehicle of traffic into a row, float64 [BOX], and on which lane it is."""
+    heading = direction(box.yaw_rad)
+    row[at.X], row[at.Y], row[at.COSINE], row[at.SINE] = box.x_m, box.y_m, heading.cos, heading.sin
+    row[at.SPEED], row[at.LENGTH], row[at.WIDTH] = box.speed_mps, box.length_m, box.width_m
+    row[at.LANE], row[at.ALONG] = -1.0, 0.0
+    found = nearest_segment(
+        lanes.rows, lanes.starts, lanes.items, lanes.grid, box.x_m, box.y_m, heading.cos, heading.sin, HEADING_M
+    )
+    if found.segment >= 0.0:
+        segment = int(found.segment)
+        lane = lanes.owners[segment]
+        if abs(found.lateral_m) <= 0.5 * widths_m[int(lane)]:
+            row[at.LANE], row[at.ALONG] = lane, lanes.rows[segment, 5] + found.along_m
 
 
 def _lead_driver(profile: LeadVehicle | None, route: Route | None, ego: Box | None) -> LeadDriver | None:

@@ -8,6 +8,7 @@ from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.console.surroundings import Surroundings
 from simconsole.control.requests.refusals import SteeringLimit
 from simconsole.profiles.bridge import BridgeProfile
+from simconsole.profiles.link import LinkProfile, WayProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.signals import Event, Link, LinkState, Notice, Reason, RemoteCommand
 from simconsole.values.state_vector import LAYOUT
@@ -71,6 +72,39 @@ def test_odometry_can_be_asked_for_out_of_turn(peer: Any, snapshot: Callable[...
         peer.send(op="subscribe", topic=topic)
     peer.bridge.publish(snapshot(4), 0, odometry=True)
     assert [message["topic"] for message in peer.heard()] == ["/odom"]
+
+
+def test_measurements_go_over_the_link_and_what_the_console_decides_does_not(
+    join: Callable[..., Any], snapshot: Callable[..., Any]
+) -> None:
+    link = LinkProfile(measurements=WayProfile(delay_ms=40.0))
+    peer = join(ConsoleBridge(BridgeProfile(link=link)))
+    for topic in ("/odom", "/tf", "/imu/data", "/console/arbitration", "/clock"):
+        peer.send(op="subscribe", topic=topic, queue_length=1000)
+    assert peer.send(op="subscribe", topic="/ground_truth/odom").kind == "refused", "it would tell all at once"
+    peer.heard()
+    due = []
+    for tick in range(1, 61):
+        due.append(peer.bridge.publish(snapshot(tick, x_m=float(tick)), 0))
+        for heard in peer.heard():
+            head = heard["msg"].get("header", heard["msg"])
+            if "transforms" in head:
+                head = head["transforms"][0]["header"]
+            stamp = head.get("stamp", head.get("clock"))
+            late = 0 if heard["topic"] in ("/console/arbitration", "/clock") else 10
+            assert stamp["nanosec"] == (tick - late) * 4 * MS, heard["topic"]
+            if heard["topic"] == "/odom":
+                assert heard["msg"]["pose"]["pose"]["position"]["x"] == tick - 10.0
+    assert due == [(tick - 10) * 4 * MS if tick % 5 == 0 and tick > 10 else None for tick in range(1, 61)]
+
+
+def test_nobody_need_answer_an_odometry_that_is_lost_or_overtaken(snapshot: Callable[..., Any]) -> None:
+    way = WayProfile(jitter_ms=80.0, loss_share=0.2)
+    bridge = ConsoleBridge(BridgeProfile(link=LinkProfile(seed=3, measurements=way)))
+    due = [bridge.publish(snapshot(tick), 0, odometry=True) for tick in range(5, 5000, 5)]
+    asked = [stamp_ns for stamp_ns in due if stamp_ns is not None]
+    assert asked == sorted(set(asked))
+    assert 300 < len(asked) < 799
 
 
 def test_equal_drives_send_equal_bytes(join: Callable[..., Any], snapshot: Callable[..., Any]) -> None:

@@ -53,6 +53,13 @@ def test_box_speed_and_kind_of_each_at_the_time_of_the_step(snapshot: Callable[.
     assert detection["bbox"]["size"] == {"x": 5.5, "y": 2.0, "z": 2.2}
 
 
+def test_height_and_indicators_are_told(snapshot: Callable[..., Any]) -> None:
+    messages = told(snapshot, BridgeProfile(), RoadUsersAt(370, table([VAN._replace(z_m=12.0, turn_indicators=-1.0)])))
+    (user,), (detection,) = messages["/road_users"]["users"], messages["/road_users/detections"]["detections"]
+    assert (user["pose"]["position"]["z"], user["turn_indicators"]) == (12.0, -1)
+    assert detection["bbox"]["center"]["position"]["z"] == pytest.approx(13.1)
+
+
 def test_nobody_is_an_empty_message(snapshot: Callable[..., Any]) -> None:
     messages = told(snapshot, BridgeProfile(), RoadUsersAt(0, NOBODY))
     assert messages["/road_users"]["users"] == messages["/road_users/detections"]["detections"] == []

@@ -97,6 +97,12 @@ def test_statuses_are_kept_bounded() -> None:
     assert client.statuses[-1].msg == str(MAX_STATUS + 4)
 
 
+def test_a_latched_publisher_says_so() -> None:
+    client = ClientProtocol()
+    assert json.loads(client.advertise("/map", "nav_msgs/OccupancyGrid", latch=True))["latch"] is True
+    assert "latch" not in json.loads(client.advertise("/s", "std_msgs/String"))
+
+
 def test_what_is_published_must_be_advertised_and_fit() -> None:
     client = ClientProtocol()
     with pytest.raises(LocalProtocolError, match="advertise it before"):

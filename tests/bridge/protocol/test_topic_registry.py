@@ -1,4 +1,4 @@
-"""Quality of service: what a publisher or subscriber asks for is done. The rest is in test_server_protocol.py."""
+"""Quality of service, and topics that are shared: what is asked for is done. The rest is in test_server_protocol.py."""
 
 import json
 from collections.abc import Callable
@@ -8,6 +8,7 @@ import cbor2
 import pytest
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.bridge.messages import standard_registry
 from simconsole.bridge.protocol.message_decoding import Binary
 
 S = 10**9
@@ -208,3 +209,21 @@ def test_clients_of_one_spelling_and_encoding_share_a_text_and_others_get_their_
         assert [text["msg"]["data"] for text in decoded] == [word] * len(asked)
         assert [isinstance(text, Binary) for text in texts] == ["compression" in how for how in asked]
         assert texts[0] is texts[1]
+
+
+def test_a_shared_output_is_published_by_clients_too_and_stays_when_they_leave(
+    bridge: ConsoleBridge, join: Callable[..., Any]
+) -> None:
+    shared = {"topic": "/shared", "type": "std_msgs/String"}
+    bridge.router.add_output("/shared", "std_msgs/String", shared=True)
+    sender, listener = join(bridge), join(bridge)
+    listener.send(op="subscribe", **shared)
+    sender.send(op="advertise", **shared)
+    sender.publish("/shared", {"data": "theirs"})
+    bridge.router.publish("/shared", standard_registry().struct("std_msgs/String")("ours"), 0)
+    assert sender.statuses() == []
+    told = [message["msg"]["data"] for message in listener.heard()]
+    assert told == ["theirs", "ours"], "the newer one has not taken the other's place"
+    sender.send(op="unadvertise", topic="/shared")
+    listener.send(op="unsubscribe", topic="/shared")
+    assert bridge.router.topic("/shared") is not None

@@ -82,7 +82,13 @@ class Bench:
         self.client = client
         self.put: list[tuple[Any, ...]] = []
         self.destroyed: list[Any] = []
-        node = SimpleNamespace(create_client=lambda *_, **__: client, destroy_client=self.destroyed.append)
+        self.servers = [b"one"]
+        """Those of the action."""
+        node = SimpleNamespace(
+            create_client=lambda *_, **__: client,
+            destroy_client=self.destroyed.append,
+            get_publishers_info_by_topic=lambda _: [SimpleNamespace(endpoint_gid=gid) for gid in self.servers],
+        )
         self.calls = GraphCalls(node, None, lambda *words: self.put.append(words), 30.0)
 
     def do(self, kind: Any, data: bytes | None = b"cdr", text: str = "", key: str = "key", **more: Any) -> None:
@@ -219,7 +225,52 @@ def test_a_goal_that_is_cancelled_before_it_is_accepted_is_cancelled_then(bench:
     assert goal.cancelled == 1, "it has ended"
 
 
+@pytest.mark.parametrize(("before", "later"), [([b"one", b"two"], []), ([b"one"], [b"two"])])
+@pytest.mark.parametrize("leaves", [b"one", b"two"])
+def test_a_goal_ends_when_a_server_leaves_that_may_have_accepted_it(
+    bench: Bench, before: list[bytes], later: list[bytes], leaves: bytes
+) -> None:
+    bench.servers = before
+    bench.do("goal")
+    goal = Goal()
+    bench.client.answers[0].end(goal)
+    bench.servers = [*before, *later]
+    bench.poll(2)
+    bench.servers = [gid for gid in bench.servers if gid != leaves]
+    bench.poll(READY_POLLS)
+    assert bench.put == []
+    bench.poll(1)
+    ((event, key, _, data, status, why),) = bench.put
+    assert (event, key, data, status) == ("goal_ended", "key", None, ABORTED)
+    assert "has left the graph" in why
+    assert goal.cancelled == 1
+    assert bench.calls.open == 0
+
+
+def test_a_server_that_comes_long_after_a_goal_was_accepted_may_leave(bench: Bench) -> None:
+    bench.do("goal")
+    bench.client.answers[0].end(Goal())
+    bench.poll(READY_POLLS + 1)
+    bench.servers = [b"one", b"two"]
+    bench.poll(5)
+    bench.servers = [b"one"]
+    bench.poll(2 * READY_POLLS)
+    assert bench.put == []
+    assert bench.calls.open == 1
+
+
 def test_a_goal_that_is_not_accepted_is_aborted(bench: Bench) -> None:
     bench.do("goal")
     bench.client.answers[0].end(SimpleNamespace(accepted=False))
     assert bench.put == [("goal_ended", "key", "/it", None, ABORTED, "the goal was not accepted")]
+
+
+def test_a_goal_that_a_server_does_not_know_ends_and_is_cancelled_at_any_other(bench: Bench) -> None:
+    bench.do("goal")
+    goal = Goal()
+    bench.client.answers[0].end(goal)
+    goal.end.end(SimpleNamespace(result=None, status=0))
+    ((event, key, _, data, status, why),) = bench.put
+    assert (event, key, data, status) == ("goal_ended", "key", None, ABORTED)
+    assert "does not know the goal" in why
+    assert goal.cancelled == 1

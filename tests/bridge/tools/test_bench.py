@@ -2,16 +2,31 @@ import asyncio
 import threading
 from collections import deque
 from collections.abc import Callable, Iterator
+from contextlib import nullcontext
 
 import orjson
 import pytest
 from websockets.asyncio.server import ServerConnection, serve
 
 from simconsole.bridge.tools.bench import IN_FLIGHT, Case, bench
+from simconsole.bridge.tools.bench_servers import RunningServer, running_servers
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import BridgeError
 from tests.bridge.fixtures import Served
 from tests.patience import PATIENCE_S
+
+
+@pytest.fixture(scope="module")
+def servers() -> Iterator[list[RunningServer]]:
+    """The servers that a benchmark starts: four processes, started once."""
+    with running_servers() as started:
+        yield started
+
+
+@pytest.fixture(autouse=True)
+def started(servers: list[RunningServer], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let each benchmark find them started."""
+    monkeypatch.setattr("simconsole.bridge.tools.bench.running_servers", lambda: nullcontext(list(servers)))
 
 
 @pytest.fixture(params=["websockets", "picows"])

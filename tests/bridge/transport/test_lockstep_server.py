@@ -12,8 +12,10 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
 from simconsole.bridge.client.bridge_client import BridgeClient
+from simconsole.bridge.link.measurements import LateMeasurements
 from simconsole.bridge.transport.lockstep_server import LockstepBridge
 from simconsole.profiles.bridge import BridgeLimits, BridgeProfile
+from simconsole.profiles.link import LinkProfile, WayProfile
 from simconsole.values.errors import BridgeError
 from simconsole.values.signals import NEVER_TICKS, Event, RemoteCommand, RemoteKind
 from tests.patience import PATIENCE_S
@@ -110,6 +112,29 @@ def test_networked_drive_is_as_repeatable_as_a_scripted_one(snapshot: Callable[.
             assert bridge.wait_for_client(PATIENCE_S)
             drives.append(drive(bridge, snapshot, 200))
     assert drives[0] == drives[1] == drives[2]
+
+
+def test_a_lost_odometry_is_not_waited_for(snapshot: Callable[..., Any]) -> None:
+    """Half are lost: who answers those that come answers all that the console waits for."""
+    link = LinkProfile(seed=2, measurements=WayProfile(loss_share=0.5))
+    here = [tick for tick in range(5, 201, 5) if _arrives(link, tick)]
+    drives = []
+    for _ in range(2):
+        with (
+            LockstepBridge(BridgeProfile(port=0, link=link)) as bridge,
+            beside(answering(bridge.url, len(here), steer)),
+        ):
+            assert bridge.wait_for_client(PATIENCE_S)
+            drives.append(drive(bridge, snapshot, 200))
+    assert drives[0] == drives[1]
+    for tick, command in enumerate(drives[0], start=1):
+        assert command.road_wheel_rad == max((one for one in here if one < tick), default=0) / 1000.0
+
+
+def _arrives(link: LinkProfile, tick: int) -> bool:
+    late: LateMeasurements[int] = LateMeasurements(link)
+    late.send("/odom", tick, 250, tick)
+    return late.arrived(tick) == [tick]
 
 
 def test_other_commands_do_not_end_the_wait(lockstep: LockstepBridge, snapshot: Callable[..., Any]) -> None:

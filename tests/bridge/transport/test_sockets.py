@@ -1,8 +1,9 @@
+import errno
 import socket
 
 import pytest
 
-from simconsole.bridge.transport.sockets import address_url, is_unacknowledged, listen
+from simconsole.bridge.transport.sockets import address_url, bind, is_unacknowledged, listen
 from simconsole.values.errors import BridgeError
 from tests.bridge.networks import go_deaf
 
@@ -34,6 +35,14 @@ def test_address_in_use_is_one_line() -> None:
         assert not taken.getblocking()
         with pytest.raises(BridgeError, match=f"cannot listen on 127.0.0.1 port {port}"):
             listen("127.0.0.1", port)
+        with pytest.raises(BridgeError, match=f"cannot listen on 127.0.0.1 port {port}"):
+            bind("127.0.0.1", port)
+
+
+def test_an_address_without_listening_lets_nobody_connect() -> None:
+    """Who is let in and then cut off takes the server for one that has failed."""
+    with bind("127.0.0.1", 0) as sock, socket.socket() as client:
+        assert client.connect_ex(sock.getsockname()) == errno.ECONNREFUSED
 
 
 def test_addresses_as_clients_write_them() -> None:

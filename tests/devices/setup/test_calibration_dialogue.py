@@ -147,6 +147,25 @@ def test_a_shipped_wheel_keeps_its_motor(sdl: None, tmp_path: Path, t500: Cockpi
     assert (learnt.force_feedback, learnt.wheel.lock_to_lock_deg) == (g29.force_feedback, 900.0)
 
 
+def test_a_shipped_gamepad_keeps_what_no_step_can_learn(sdl: None, tmp_path: Path, t500: CockpitProfile) -> None:
+    """Its curves and its steering assistance: a stick without them would throw the car about."""
+    pad = load("devices", "gamepad", CockpitProfile)
+    limits = msgspec.structs.replace(pad.limits, stale_s=0.3)
+    shifter = msgspec.structs.replace(pad.shifter, top_gear=5)
+    pad = msgspec.structs.replace(pad, limits=limits, shifter=shifter)
+    path = tmp_path / "mine.yaml"
+    ask = answers(pad, HANDBRAKE="s", lever="s", pattern="s")
+    calibrate_devices(t500, path, say=quiet, ask=ask, virtual=pad, pace=at_once, known=[pad])
+    learnt = load("devices", str(path), CockpitProfile)
+    assert learnt.wheel.assistance == pad.wheel.assistance is not None
+    assert (learnt.wheel.curve, learnt.wheel.dead_zone, learnt.wheel.rate_filter_s) == (1.8, 0.1, 0.05)
+    throttle = learnt.pedals.throttle
+    assert (throttle.axis, throttle.curve, throttle.dead_zone) == (5, 1.5, 0.04)
+    assert (learnt.shifter, learnt.limits) == (shifter, limits)
+    assert learnt.provenance["pedals.throttle.curve"] == pad.provenance["pedals.throttle.curve"]
+    assert learnt.provenance["pedals"].status == "captured"
+
+
 def test_giving_up_writes_nothing_and_an_old_profile_is_spared(sdl: None, tmp_path: Path, t500: CockpitProfile) -> None:
     path = tmp_path / "mine.yaml"
     with pytest.raises(KeyboardInterrupt):

@@ -1,14 +1,23 @@
 """Feeling the forces, on a simulated wheel: what it does by itself is measured, what it does not is asked."""
 
+from collections.abc import Callable
+
 import msgspec
+import numpy as np
 import pytest
 
 from simconsole.devices.force_feedback.motor import SimulatedWheelPort
+from simconsole.devices.force_feedback.rim import Rim
 from simconsole.devices.setup.device_commands import Pace
-from simconsole.devices.setup.force_feedback_check import FORCES, check_force_feedback
+from simconsole.devices.setup.force_feedback_check import FORCES, Force, check_force_feedback
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load
+from simconsole.profiles.force_feedback import ForceFeedback
 from simconsole.values.errors import DeviceError
+from simconsole.values.units import DEG_PER_RAD, RAD_PER_DEG
+from tests.devices.benched_wheel import TICK_HZ, BenchedWheel
+from tests.devices.hands_off import ENDS, draws
+from tests.samples import Sample
 
 pytestmark = pytest.mark.usefixtures("sdl")
 
@@ -125,3 +134,30 @@ def test_a_wheel_that_runs_away_is_let_go(t500: CockpitProfile, monkeypatch: pyt
     monkeypatch.setattr(SimulatedWheelPort, "write", lambda port, level: write(port, 1.0 if level else 0.0))
     with pytest.raises(DeviceError, match="beyond 12 deg by itself"):
         check_force_feedback(t500, say=quiet, ask=Person(), virtual=True, pace=at_once)
+
+
+@pytest.mark.parametrize("kind", FORCES, ids=lambda kind: kind.name)
+@pytest.mark.parametrize("name", ["t500rs_th8rs", "t300rs_th8a", "g29"])
+def test_hands_that_let_go_of_a_force_leave_a_slow_wheel(
+    name: str, kind: Force, sample: Sample, record_property: Callable[[str, object], None]
+) -> None:
+    """Somebody turns the wheel, as it is asked for, and lets go of it: it never is faster than 120 deg/s."""
+    force = load("devices", name, CockpitProfile).force_feedback
+    assert force is not None
+    fastest_degps = 0.0
+    for draw in (*ENDS[4:8], *draws(np.random.default_rng(sample.seed), sample.of(1, 200))):
+        for start_deg in (0.0, 30.0, 400.0):
+            wheel = BenchedWheel(force, draw)
+            wheel.rim = Rim(start_deg * RAD_PER_DEG, 0.0)
+            played(wheel, kind, force)
+            fastest_degps = max(fastest_degps, wheel.fastest_radps * DEG_PER_RAD)
+            assert fastest_degps <= 120.0, (draw, start_deg)
+    record_property(f"let go of, {kind.name}, {name}", f"{fastest_degps:.0f} deg/s")
+
+
+def played(wheel: BenchedWheel, kind: Force, force: ForceFeedback) -> None:
+    """Play a force as `WheelBench.play` does."""
+    rad, radps, inertia_kgm2 = wheel.rim.rad, 0.0, force.motor.inertia_kgm2
+    for tick in range(1, round(kind.length_s * TICK_HZ) + 1):
+        before, rad = rad, wheel.turn(kind.torque(tick / TICK_HZ, rad, radps, inertia_kgm2))
+        radps += 0.5 * ((rad - before) * TICK_HZ - radps)

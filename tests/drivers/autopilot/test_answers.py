@@ -57,6 +57,30 @@ def test_a_car_on_its_way_back_is_driven_on_until_it_is_somewhere_else() -> None
     assert said == ["gives no commands: the car is 3.1 m beside the course, at most 3 m"]
 
 
+@pytest.mark.parametrize("name", TRACKERS)
+def test_an_overtaken_odometry_is_not_answered(name: str) -> None:
+    asked, plain = answers([], name), answers([], name)
+    for step in range(1, 50):
+        seen = at(5.0 + 0.1 * step, 0.2, 5.0), True, 0.02 * step
+        if step % 5 == 0:
+            assert asked.answer(at(5.0 + 0.1 * (step - 3), 0.5, 5.0), True, 0.02 * (step - 3) + 0.001) is None
+        assert asked.answer(*seen) == plain.answer(*seen)
+    assert (asked.statistics.skipped, asked.statistics.commands) == (9, 49)
+
+
+@pytest.mark.parametrize("name", TRACKERS)
+def test_where_time_begins_anew_so_does_the_tracker(name: str) -> None:
+    asked, fresh = answers([], name), answers([], name)
+    for step in range(100):
+        asked.answer(at(60.0 + 0.1 * step, 0.2, 5.0), True, 100.0 + 0.02 * step)
+    for step in range(50):
+        seen = at(2.0 + 0.1 * step, 0.3, 5.0), step > 10, 0.02 * step
+        again, first = asked.answer(*seen), fresh.answer(*seen)
+        assert again is not None
+        assert first is not None
+        assert (again.road_wheel_rad, again.accel_mps2) == (first.road_wheel_rad, first.accel_mps2)
+
+
 def test_the_end_is_told_once_and_only_where_the_autopilot_has_stopped_there() -> None:
     said: list[str] = []
     asked = answers(said)

@@ -59,7 +59,8 @@ def message(**changes: Any) -> Any:
     registry = standard_registry()
     told = registry.struct("simconsole_msgs/RoadUser")()
     told.id, told.kind = 7, 2
-    told.pose.position.x, told.pose.position.y = 3.0, -4.0
+    told.pose.position.x, told.pose.position.y, told.pose.position.z = 3.0, -4.0, 12.0
+    told.turn_indicators = -1
     told.pose.orientation.z, told.pose.orientation.w = math.sin(-1.0), math.cos(-1.0)
     told.twist.linear.x = changes.get("speed_mps", 6.0)
     told.size.x, told.size.y, told.size.z = 5.0, 2.0, 1.9
@@ -72,7 +73,7 @@ def message(**changes: Any) -> Any:
 def test_message_is_read_as_it_was_meant() -> None:
     rows, stamp_s = road_users_of(message())
     assert stamp_s == 12.5
-    assert rows.tolist() == [pytest.approx([7.0, 2.0, 3.0, -4.0, -2.0, 6.0, 5.0, 2.0, 1.9])]
+    assert rows.tolist() == [pytest.approx([7.0, 2.0, 3.0, -4.0, -2.0, 6.0, 5.0, 2.0, 1.9, 12.0, -1.0])]
 
 
 def test_values_that_are_no_numbers_are_nobody() -> None:

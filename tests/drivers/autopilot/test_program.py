@@ -41,8 +41,9 @@ def driving(mode: Mode) -> str:
 class Server:
     """In lockstep: one odometry out, one command in; the car of a kinematic single-track model."""
 
-    def __init__(self, steps: int, engage_at: int) -> None:
-        self.steps, self.engage_at = steps, engage_at
+    def __init__(self, steps: int, engage_at: int, wishes: int = 3) -> None:
+        self.steps, self.engage_at, self.expected = steps, engage_at, wishes
+        self.plans: list[tuple[int, dict[str, Any]]] = []  # with the step of the command after which each came
         self.wishes: list[dict[str, Any]] = []
         self.stamps: list[bool] = []
         self.lateral: list[float] = []
@@ -54,15 +55,22 @@ class Server:
         except BaseException as error:  # noqa: BLE001  # shown by the test, which runs in another thread
             self.failure = error
 
+    def command(self, socket: ServerConnection, step: int) -> dict[str, Any]:
+        """Return the next command; plans come between two of them."""
+        while (said := json.loads(socket.recv()))["topic"] == "/autopilot/plan":
+            self.plans.append((step - 1, said["msg"]))
+        command: dict[str, Any] = said["msg"]
+        return command
+
     def drive(self, socket: ServerConnection) -> None:
-        while len(self.wishes) < 3:
+        while len(self.wishes) < self.expected:
             self.wishes.append(json.loads(socket.recv()))
         x, y, yaw, speed, wheel = 100.0, 0.3, 0.0, 8.0, 0.0
         for step in range(self.steps):
             engaged = step >= self.engage_at
             socket.send(driving(Mode.AUTONOMOUS if engaged else Mode.PARKED))
             socket.send(odometry(step, x, y, yaw, speed, speed * math.tan(wheel) / WHEELBASE_M))
-            command = json.loads(socket.recv())["msg"]
+            command = self.command(socket, step)
             self.stamps.append(command["stamp"] == {"sec": step // 50, "nanosec": step % 50 * 20_000_000})
             if engaged:
                 wheel += 0.33 * (command["lateral"]["steering_tire_angle"] - wheel)
@@ -105,6 +113,25 @@ def test_every_odometry_gets_one_command_with_its_stamp() -> None:
         ("subscribe", "/console/mode", "std_msgs/String"),
         ("subscribe", "/odom", "nav_msgs/Odometry"),
     ]
+
+
+def test_what_it_plans_is_told_now_and_then_and_only_after_the_command() -> None:
+    server = Server(steps=101, engage_at=0, wishes=4)
+    with serving(server) as url:
+        results = run(url, "urban", plan_hz=5.0)
+    assert server.failure is None
+    assert ("advertise", "/autopilot/plan") in [(wish["op"], wish["topic"]) for wish in server.wishes]
+    assert server.stamps == [True] * 101, "plans keep nobody from a command"
+    assert [step for step, _ in server.plans] == list(range(0, 100, 10)), "five in each second of the odometry"
+    for step, plan in server.plans:
+        assert plan["header"] == {"stamp": {"sec": step // 50, "nanosec": step % 50 * 20_000_000}, "frame_id": "map"}
+        places = [pose["pose"]["position"] for pose in plan["poses"]]
+        assert len(places) == 21
+        assert places[0]["x"] == pytest.approx(100.0 + 0.16 * step, abs=2.5)
+        assert 40.0 < places[-1]["x"] - places[0]["x"] < 5.0 * 50.0 / 3.6, "between its speed now and the limit"
+        assert abs(places[-1]["y"]) < 0.05
+    assert server.plans[0][1]["poses"][0]["pose"]["position"]["y"] == pytest.approx(0.3, abs=0.02), "from where it is"
+    assert results["commands"] == 101
 
 
 def test_stop_ends_it() -> None:

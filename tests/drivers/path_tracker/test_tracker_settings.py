@@ -2,7 +2,17 @@
 
 import pytest
 
-from simconsole.drivers.path_tracker.tracker_settings import HATCHBACK, TIMING, CarModel
+from simconsole.drivers.path_tracker.tracker_settings import (
+    COMFORT,
+    GATE,
+    HATCHBACK,
+    TIMING,
+    CarModel,
+    Gate,
+    asked_at_most,
+    planned_within,
+)
+from simconsole.profiles.control import ControlProfile
 from simconsole.profiles.files.loader import load
 from simconsole.profiles.vehicle import CarProfile
 
@@ -30,3 +40,17 @@ def test_a_front_axle_that_is_weaker_for_its_load_understeers() -> None:
 
 def test_the_delay_is_within_one_period_as_the_tracker_needs_it() -> None:
     assert 0.0 <= TIMING.delay_s <= TIMING.period_s
+
+
+def test_behind_the_gate_of_a_session_as_shipped_comfort_decides() -> None:
+    shipped = ControlProfile()
+    assert Gate(shipped.automatic_lateral_accel_mps2, shipped.automatic_lateral_jerk_mps3) == GATE
+    assert planned_within(COMFORT, GATE) == planned_within(COMFORT, Gate(lateral_jerk_mps3=0.0)) == COMFORT
+    assert asked_at_most(GATE) == asked_at_most(Gate(20.0, 0.0))
+
+
+@pytest.mark.parametrize("gate", [Gate(2.0, 7.0), Gate(5.0, 2.5), Gate(1.0, 1.0)])
+def test_behind_a_tighter_gate_less_is_asked_for_and_still_less_is_planned(gate: Gate) -> None:
+    planned, asked = planned_within(COMFORT, gate), asked_at_most(gate)
+    assert planned.lateral_mps2 < asked.lateral_mps2 < gate.lateral_mps2
+    assert planned.lateral_jerk_mps3 < asked.lateral_jerk_mps3 < gate.lateral_jerk_mps3

@@ -14,7 +14,7 @@ from simconsole.recording.bundles.bundle import add_export, open_bundle
 from simconsole.recording.bundles.manifest import MANIFEST, read_manifest, write_manifest
 from simconsole.recording.bundles.signing import make_key, sign
 from simconsole.recording.bundles.verification import verify
-from simconsole.session.scene_job import LIVE_SCENE
+from simconsole.session.scene_worker import LIVE_SCENE
 from simconsole.values.errors import RecordingError, WorkerError
 
 

@@ -78,8 +78,10 @@ def test_everything_of_the_hilly_road_is_on_its_ground(drawing: Drawing) -> None
     """Asphalt, paint and kerbs lie on the field, the land below them, and posts stand on it."""
     ground = drawing.ground
     assert ground is not None
-    parts = {part.name: part for part in world_parts(drawing, 80.0)}
-    for name, low, high in (("asphalt", 0.0, 0.02), ("markings", 0.0, 0.05), ("kerbs", -0.01, 0.13)):
+    parts = {part.name: part for part in world_parts(drawing, ((0.0, 50.0),))}
+    parts["verges"] = next(part for part in world_parts(drawing, ((0.0, 80.0),)) if part.name == "verges")
+    bounds = (("asphalt", 0.0, 0.02), ("verges", 0.0, 0.05), ("markings", 0.0, 0.05), ("kerbs", -0.01, 0.13))
+    for name, low, high in bounds:
         points = parts[name].mesh["position"].astype(float)
         above = points[:, 2] - heights(ground, points)
         assert low - 1e-3 <= above.min() <= above.max() <= high + 1e-3
@@ -104,8 +106,8 @@ def covered(triangles: np.ndarray, points: np.ndarray) -> float:
 
 
 def test_other_vehicles_are_told_how_high_the_ground_is(drawing: Drawing) -> None:
-    scene = view_scene(drawing, 80.0, SIZE)
+    scene = view_scene(drawing, ((0.0, 80.0),), SIZE)
     x, y = drawing.path[len(drawing.path) // 3]
     assert drawing.ground is not None
     assert scene.height_m(x, y) == pytest.approx(float(heights(drawing.ground, drawing.path)[len(drawing.path) // 3]))
-    assert view_scene(None, 0.0, SIZE).height_m(x, y) == 0.0
+    assert view_scene(None, (), SIZE).height_m(x, y) == 0.0

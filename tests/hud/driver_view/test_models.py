@@ -14,25 +14,37 @@ from simconsole.world.drawing import draw
 from tests.hud.driver_view.test_gltf import read, triangles
 
 CAR = Size(3.99, 1.75, 1.45, 0.75, 2.5)
+ROBOT = Size(0.138, 0.178, 0.192, 0.101, 0.160)
 BALL = Size(0.4, 0.4, 0.4, 0.2, 0.4)
 MOST_BYTES = 1_000_000
 
 
 def test_the_urban_course_is_complete_and_small() -> None:
     drawing = draw(Course(load("worlds", "urban", CourseProfile)))
-    data = world_model(drawing, 50.0)
+    data = world_model(drawing, ((0.0, 50.0),))
     assert 4 * len(data) / 3 < MOST_BYTES
     content, binary = read(data)
     meshes = {node["name"]: node["mesh"] for node in content["nodes"] if "mesh" in node}
     layers = {node["name"]: node["extras"]["layer"] for node in content["nodes"] if "layer" in node.get("extras", {})}
-    assert layers == {"land": 0, "asphalt": 1, "islands": 2, "markings": 3, "crossings": 3, "stop_lines": 3}
-    for part in world_parts(drawing, 50.0):
+    assert layers == {
+        "land": 0,
+        "verges": 1,
+        "asphalt": 1,
+        "islands": 2,
+        "markings": 3,
+        "crossings": 3,
+        "stop_lines": 3,
+    }
+    for part in world_parts(drawing, ((0.0, 50.0),)):
+        if part.name == "verges":
+            assert len(part.mesh) == 0  # a town has kerbs
+            continue
         assert len(triangles(content, binary, meshes[part.name])) == len(part.mesh) // 3, part.name
     assert sum(name.startswith("signal_") for name in meshes) == 3 * len(drawing.lights) > 0
 
 
 def test_without_a_world_there_is_a_plain() -> None:
-    content, _ = read(world_model(None, 0.0))
+    content, _ = read(world_model(None, ()))
     assert [node["name"] for node in content["nodes"]] == ["land", "grid", "map"]
 
 
@@ -65,3 +77,15 @@ def test_a_ball_is_one_frame() -> None:
     assert [frame.name for frame in moving_frames(vehicle_meshes(BALL), 1.0, ShownVehicle())] == ["base_link"]
     content, _ = read(vehicle_model(BALL))
     assert [node["name"] for node in content["nodes"]] == ["body", "driver_eye", "base_link"]
+
+
+def test_a_robot_has_two_wheels_that_roll_and_do_not_steer() -> None:
+    shown = ShownVehicle(distance_m=0.033, road_wheel_rad=0.4)
+    frames = moving_frames(vehicle_meshes(ROBOT), 10.0, shown)
+    assert [frame.name for frame in frames] == ["base_link", "left_wheel", "right_wheel"]
+    assert all(frame.turn_rad == pytest.approx((0.0, 1.0, 0.0)) for frame in frames[1:])
+    content, _ = read(vehicle_model(ROBOT))
+    nodes = {node["name"]: node for node in content["nodes"]}
+    assert nodes.keys() == {"body", "driver_eye", "left_wheel", "right_wheel", "base_link"}
+    for frame in frames[1:]:
+        assert nodes[frame.name]["translation"] == pytest.approx(frame.place_m), frame.name

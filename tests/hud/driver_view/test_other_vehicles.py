@@ -3,7 +3,17 @@ import math
 import numpy as np
 import pytest
 
-from simconsole.hud.driver_view.other_vehicles import LONGEST_S, SIZE, at_moment, meshes, model
+from simconsole.hud.driver_view.other_vehicles import (
+    LONGEST_S,
+    PAINTS,
+    SIZE,
+    at_moment,
+    bodies,
+    meshes,
+    model,
+    paint_of,
+)
+from simconsole.hud.driver_view.vehicle_body import GLASS
 from simconsole.world.traffic.road_users import RoadUser, RoadUsersAt, table
 
 USER = RoadUser(
@@ -23,6 +33,41 @@ USER = RoadUser(
 def test_everybody_goes_on_after_the_last_step_but_not_for_ever(t_s: float, moved_m: float) -> None:
     (found,) = at_moment(RoadUsersAt(250, table([USER])), t_s, 250)
     assert (found.x_m, found.y_m) == pytest.approx((30.0, 4.0 + moved_m))
+
+
+def test_who_turns_does_so_evenly_between_two_steps() -> None:
+    """On a circle, stepped 25 times a second: where it is drawn at any moment before the next step."""
+    radius_m, speed_mps, tick_hz = 10.0, 8.0, 250
+
+    def at(t_s: float) -> RoadUser:
+        yaw = speed_mps * t_s / radius_m
+        return USER._replace(
+            x_m=radius_m * math.sin(yaw), y_m=-radius_m * math.cos(yaw), yaw_rad=yaw, speed_mps=speed_mps
+        )
+
+    before, newest = (RoadUsersAt(tick, table([at(tick / tick_hz)])) for tick in (240, 250))
+    for t_s in np.linspace(1.0, 1.04, 9).tolist():
+        (found,), true = at_moment(newest, t_s, tick_hz, before), at(t_s)
+        assert found.yaw_rad == pytest.approx(true.yaw_rad, abs=1e-6)
+        assert (found.x_m, found.y_m) == pytest.approx((true.x_m, true.y_m), abs=1e-3)
+
+
+def test_who_turns_round_on_the_spot_or_has_just_come_goes_straight_on() -> None:
+    newest = RoadUsersAt(250, table([USER]))
+    for before in (table([USER._replace(yaw_rad=-1.5)]), table([USER._replace(id=7.0, yaw_rad=1.5)])):
+        (found,) = at_moment(newest, 1.02, 250, RoadUsersAt(240, before))
+        assert found.yaw_rad == USER.yaw_rad
+        assert (found.x_m, found.y_m) == pytest.approx((30.0, 4.2))
+
+
+def test_vehicles_have_their_own_paint_and_keep_it() -> None:
+    assert len({paint_of(USER._replace(id=float(number))) for number in range(20)}) == len(PAINTS)
+    assert paint_of(USER) == paint_of(USER._replace(x_m=99.0, speed_mps=0.0))
+    for body, paint in zip(bodies(), PAINTS, strict=True):
+        assert (body["position"] == meshes().body["position"]).all()
+        colours = {tuple(colour) for colour in body["colour"][:, :3].tolist()}
+        assert {paint, GLASS} <= colours
+        assert not colours & (set(PAINTS) - {paint})
 
 
 def test_body_fills_the_box_of_the_road_user() -> None:

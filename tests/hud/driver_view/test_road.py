@@ -16,9 +16,13 @@ from simconsole.hud.driver_view.road import (
     thinned,
 )
 from simconsole.profiles.files.loader import load
-from simconsole.profiles.world import CourseProfile
+from simconsole.profiles.files.world_files import load_world
+from simconsole.profiles.world import CourseProfile, RoadsProfile
 from simconsole.world.course import Course
 from simconsole.world.drawing import draw
+from simconsole.world.kinds.worlds import open_map, open_world
+from simconsole.world.roads.road_drawing import beside
+from tests.samples import Sample
 
 MARKING_M = 0.02
 
@@ -42,6 +46,29 @@ def test_markings_lie_on_the_lane_geometry(course: Course, meshes: RoadMeshes) -
     assert plain.sum() > 100
     beside = np.abs(paint[plain, 1][:, None] - np.array((-half_m, half_m, 3.0 * half_m))).min(axis=1)
     assert np.abs(beside - 0.5 * LINE_M).max() < MARKING_M
+
+
+@pytest.mark.parametrize("name", ["urban_signals", "country", "motorway"])
+def test_markings_of_a_road_map_lie_on_the_borders_of_its_lanes(name: str, sample: Sample) -> None:
+    """Each painted point is half a line's width beside a border, however thinned the line is."""
+    world = load_world(name)
+    assert isinstance(world, RoadsProfile)
+    drawing = open_world(world).drawing
+    paint = road_meshes(drawing, occupancy_of(drawing)).markings["position"][:, :2].astype(float)
+    borders = [
+        beside(lane.line[:, :2], side * 0.5 * lane.width_m)
+        for lane in open_map(world).lanes
+        for side in (-1.0, 1.0)
+    ]  # fmt: skip
+    starts, ends = np.vstack([line[:-1] for line in borders]), np.vstack([line[1:] for line in borders])
+    along = ends - starts
+    squared = np.maximum((along**2).sum(axis=1), 1e-12)
+    generator = np.random.Generator(np.random.PCG64(sample.seed))
+    for point in generator.choice(paint, sample.of(300, 3000), replace=False):
+        share = np.clip(((point - starts) * along).sum(axis=1) / squared, 0.0, 1.0)
+        away = np.hypot(*(starts + share[:, None] * along - point).T)
+        assert np.abs(away - 0.5 * LINE_M).min() < MARKING_M, point
+        assert away.min() < 0.5 * LINE_M + MARKING_M, point
 
 
 def test_markings_follow_every_bend_of_the_lane(course: Course, meshes: RoadMeshes) -> None:
@@ -107,3 +134,17 @@ def test_dashes_are_as_long_as_they_should_be_and_keep_the_bend() -> None:
 def test_the_road_takes_its_ground(course: Course) -> None:
     taken: Occupancy = occupancy_of(draw(course))
     assert taken.is_taken(course.offset(0.0, 0.0, course.length_m)).all()
+
+
+def test_a_road_outside_of_towns_has_verges_instead_of_kerbs(course: Course) -> None:
+    drawing = draw(course)
+    taken = occupancy_of(drawing)
+    town, country = road_meshes(drawing, taken, ((0.0, 50.0),)), road_meshes(drawing, taken, ((0.0, 100.0),))
+    assert len(town.kerbs) > len(town.verges) == 0
+    assert len(country.verges) > len(country.kerbs) == 0
+    assert (country.verges["normal"][:, 2] == 255).all()
+    outer = ~taken.is_taken(country.verges["position"][:, :2].astype(float))
+    assert 0.45 < outer.mean() < 0.55  # one rim on the road's edge, the other one beside the road
+    half = road_meshes(drawing, taken, ((0.0, 50.0), (0.5 * course.length_m, 100.0)))
+    assert 0 < len(half.kerbs) < len(town.kerbs)
+    assert 0 < len(half.verges) < len(country.verges)

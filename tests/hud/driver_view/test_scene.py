@@ -28,7 +28,7 @@ def test_nothing_that_a_camera_sees_is_left_out(sample: Sample) -> None:
     """A vertex inside the picture and within reach belongs to a run that is drawn."""
     generator = np.random.Generator(np.random.PCG64(sample.seed))
     course = Course(load("worlds", "urban", CourseProfile))
-    solids = view_scene(draw(course), 50.0, SIZE).solids
+    solids = view_scene(draw(course), ((0.0, 50.0),), SIZE).solids
     corners = solids.vertices["position"].astype(float)
     for _ in range(sample.of(20, 500)):
         eye = np.array((*corners[generator.integers(len(corners)), :2] + generator.normal(0.0, 20.0, 2), 1.2))
@@ -45,7 +45,7 @@ def test_nothing_that_a_camera_sees_is_left_out(sample: Sample) -> None:
 
 
 def test_a_session_without_a_world_has_a_plain_to_move_over() -> None:
-    scene = view_scene(None, 0.0, SIZE)
+    scene = view_scene(None, (), SIZE)
     assert len(scene.layers) == 2
     assert all(len(layer.vertices) > 0 for layer in scene.layers)
     assert len(scene.solids.vertices) == 0
@@ -54,8 +54,8 @@ def test_a_session_without_a_world_has_a_plain_to_move_over() -> None:
 
 def test_every_light_of_the_drawing_has_a_post() -> None:
     drawing = draw(Course(load("worlds", "urban", CourseProfile)))
-    with_lights = view_scene(drawing, 50.0, SIZE).solids
-    without = view_scene(drawing._replace(lights=()), 50.0, SIZE).solids
+    with_lights = view_scene(drawing, ((0.0, 50.0),), SIZE).solids
+    without = view_scene(drawing._replace(lights=()), ((0.0, 50.0),), SIZE).solids
     assert len(drawing.lights) > 0
     assert len(with_lights.vertices) > len(without.vertices)
     for light in drawing.lights:

@@ -7,16 +7,17 @@ from msgspec.structs import replace
 from simconsole.hud.driver_view.camera import Viewport, to_pixels
 from simconsole.hud.driver_view.motion import ShownVehicle
 from simconsole.hud.driver_view.vehicle_body import Size
-from simconsole.hud.driver_view.views import Look, looks
+from simconsole.hud.driver_view.views import Look, RoadParts, looks
 from simconsole.profiles.view import DriverViewProfile, ViewScreen
 
 SIZE = Size(3.99, 1.75, 1.45, 0.75, 2.5)
+ROBOT = Size(0.138, 0.178, 0.192, 0.101, 0.160)
 HERE = ShownVehicle(x_m=50.0, y_m=20.0, yaw_rad=0.6)
 WINDOW = Viewport(0.0, 0.3, 1.0, 0.7)
 
 
-def of(profile: DriverViewProfile, size: Size = SIZE) -> list[Look]:
-    return looks(profile, HERE, size, WINDOW, 1400, 1050)
+def of(profile: DriverViewProfile, size: Size = SIZE, parts: RoadParts | None = None) -> list[Look]:
+    return looks(profile, HERE, size, parts or RoadParts({None: WINDOW}, WINDOW), 1400, 1050)
 
 
 def seen_at(look: Look, ahead_m: float, left_m: float, up_m: float) -> np.ndarray:
@@ -66,11 +67,23 @@ def test_a_ball_is_seen_from_behind() -> None:
     assert (seen_at(look, 0.0, 0.0, 0.25) < 1.0).all()
 
 
+def test_a_robot_is_seen_from_behind_and_small_enough_to_see_where_it_goes() -> None:
+    (look,) = of(DriverViewProfile(), ROBOT)
+    assert not look.from_seat
+    left, right = (seen_at(look, 0.0, side * 0.5 * ROBOT.width_m, 0.0)[0] for side in (1.0, -1.0))
+    assert 0.05 < right - left < 0.35
+
+
 @pytest.mark.parametrize("camera", ["chase", "bird"])
-def test_other_cameras_have_the_vehicle_in_the_picture(camera: str) -> None:
-    (look,) = of(replace(DriverViewProfile(), camera=camera))
-    corners = [seen_at(look, x, y, z) for x in (-0.7, 3.2) for y in (-0.8, 0.8) for z in (0.0, 1.4)]
+@pytest.mark.parametrize("size", [SIZE, ROBOT, Size(1.0, 1.0, 1.0, 0.5, 1.0)], ids=["car", "robot", "ball"])
+def test_other_cameras_have_the_vehicle_in_the_picture(camera: str, size: Size) -> None:
+    (look,) = of(replace(DriverViewProfile(), camera=camera), size)
+    half = 0.5 * size.width_m
+    ends = (-size.rear_overhang_m, size.front_m)
+    corners = [seen_at(look, x, y, z) for x in ends for y in (-half, half) for z in (0.0, size.height_m)]
     assert all((corner > 0.0).all() and (corner < 1.0).all() for corner in corners)
+    wide = max(corner[0] for corner in corners) - min(corner[0] for corner in corners)
+    assert wide > 0.02
 
 
 def test_every_picture_stays_in_the_part_of_the_window_that_shows_the_road() -> None:
@@ -80,3 +93,25 @@ def test_every_picture_stays_in_the_part_of_the_window_that_shows_the_road() -> 
         assert left + width <= 1400
         assert bottom >= round(0.3 * 1050)
         assert bottom + height <= 1050
+
+
+def test_mirrors_are_before_the_driver_and_below_messages() -> None:
+    front = Viewport(1.0 / 3.0, 0.3, 1.0 / 3.0, 0.7)
+    for below in (1.0, 0.8, 0.7):
+        mirrors = of(DriverViewProfile(), parts=RoadParts({None: WINDOW}, front, below))[1:]
+        assert len(mirrors) == 3
+        for look in mirrors:
+            assert look.viewport.left > front.left
+            assert look.viewport.left + look.viewport.width < front.left + front.width
+            assert look.viewport.bottom > front.bottom
+            assert look.viewport.bottom + look.viewport.height < front.bottom + below * front.height
+
+
+def test_a_screen_stands_on_the_display_that_it_names() -> None:
+    screens = (ViewScreen(yaw_deg=50.0, display=2), ViewScreen(), ViewScreen(yaw_deg=-50.0, display=1))
+    left, middle, right = Viewport(0.0, 0.3, 0.3, 0.7), Viewport(0.3, 0.3, 0.4, 0.7), Viewport(0.7, 0.3, 0.3, 0.7)
+    profile = DriverViewProfile(mirrors=False, screens=screens)
+    seen = of(profile, parts=RoadParts({None: middle, 0: middle, 1: right, 2: left}, middle))
+    assert [look.viewport for look in seen] == [left, middle, right]
+    alone = of(profile, parts=RoadParts({None: WINDOW, 0: WINDOW}, WINDOW))
+    assert [look.viewport for look in alone] == [WINDOW]

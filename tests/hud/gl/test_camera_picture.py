@@ -16,7 +16,7 @@ from simconsole.profiles.bridge import CameraProfile
 from tests.hud.gl.pictures import context
 
 RED = (255, 0, 0)
-EMPTY = view_scene(None, 0.0, Size(3.99, 1.75, 1.45, 0.75, 2.5))
+EMPTY = view_scene(None, (), Size(3.99, 1.75, 1.45, 0.75, 2.5))
 SHOWN = ShownVehicle(x_m=120.0, y_m=-40.0, yaw_rad=0.7)
 
 

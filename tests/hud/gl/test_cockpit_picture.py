@@ -1,22 +1,26 @@
 import numpy as np
 import pytest
 
-from simconsole.hud.draw import contrast
+from simconsole.hud.draw import Box, Text, bounds, contrast
 from simconsole.hud.driver_view.motion import ShownVehicle
 from simconsole.hud.driver_view.scene import view_scene
 from simconsole.hud.driver_view.vehicle_body import Size
-from simconsole.hud.gl.cockpit_picture import CockpitPicture
+from simconsole.hud.driver_view.views import looks
+from simconsole.hud.gl.cockpit_picture import CockpitPicture, road_parts
 from simconsole.hud.gl.context import is_software
-from simconsole.hud.layout import panels_over_view
-from simconsole.hud.screen import Screen, fit
-from simconsole.hud.view import HudView
+from simconsole.hud.guidance import Ahead
+from simconsole.hud.language import say
+from simconsole.hud.layout import layout, panels_over_view
+from simconsole.hud.screen import LARGE_TEXT, Screen, fit, fit_span
+from simconsole.hud.view import HudSettings, HudView
 from simconsole.profiles.view import DriverViewProfile
 from simconsole.values.labels import mode_label
 from simconsole.values.signals import Mode
 from tests.hud.gl.pictures import Pixels, context, pixels, target
+from tests.hud.pictures import GERMAN
 
 SIZES = ((640, 480), (1366, 768), (1400, 1050), (1920, 1080))
-SCENE = view_scene(None, 0.0, Size(3.99, 1.75, 1.45, 0.75, 2.5))
+SCENE = view_scene(None, (), Size(3.99, 1.75, 1.45, 0.75, 2.5))
 MANUAL = HudView(mode=float(Mode.MANUAL), mode_label=mode_label(Mode.MANUAL), shown_kmh=47, engine_running=True)
 
 
@@ -61,6 +65,59 @@ def test_the_speed_is_large_and_clear_enough_at_any_resolution(size: tuple[int, 
     assert contrast((242, 245, 247), (18, 24, 33)) > 7.0
 
 
+def told(settings: HudSettings) -> tuple[HudView, ...]:
+    """Views with every kind of text over the road: a take-over, a notice, lamps, the next turn, no data."""
+    driving = MANUAL._replace(
+        settings=settings, mode_label=say(settings.language, MANUAL.mode_label), limit_kmh=50, gear="3", rpm=2300.0,
+        automatic=True, remote_lateral=0.5, other_side="AUTOPILOT", ahead=Ahead(350.0, 1.5, 3),
+    )  # fmt: skip
+    asked = driving._replace(
+        mode=float(Mode.TAKEOVER_REQUESTED), mode_label=say(settings.language, "TAKE OVER"), takeover_stage=1,
+        remaining_s=7.0, todo_label=say(settings.language, "steer or brake"), handbrake=1.0, can_up=False,
+        reason_label=say(settings.language, "driver asked"),
+    )  # fmt: skip
+    noticed = driving._replace(notice_label=say(settings.language, "off the road"), ahead=Ahead(12.0, is_end=True))
+    return driving, asked, asked._replace(takeover_stage=2), noticed, driving._replace(stale=True)
+
+
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize(("settings", "factor"), [(HudSettings(), 1.0), (GERMAN, 1.0), (GERMAN, LARGE_TEXT)])
+def test_every_text_over_the_road_is_large_and_clear_enough(
+    size: tuple[int, int], settings: HudSettings, factor: float
+) -> None:
+    """Rules 1 and 2 from pixels: contrast of at least 7 on the ground that most pixels have, and its height."""
+    screen = screen_of_size(*size)._replace(text=factor)
+    cabin, measured = cockpit(screen), 0
+    for view in told(settings):
+        picture = shown(cabin, screen, view)
+        for item in layout(view, screen):
+            if not isinstance(item, Text) or item.text in ("-", "--"):
+                continue
+            box = bounds(item)
+            rows = slice(int(box.y) - 1, int(box.bottom) + 2)
+            part = picture[rows, int(box.x) - 1 : int(box.right) + 2].astype(np.uint32)
+            codes, counts = np.unique(part @ (65536, 256, 1), return_counts=True)
+            ground = rgb(int(codes[counts.argmax()]))
+            ink = max((rgb(int(code)) for code in codes), key=lambda colour: contrast(colour, ground))
+            assert contrast(ink, ground) >= 7.0, (item, ground, ink)
+            stands_out = (np.abs(part.astype(int) - ground).max(axis=2) > 40).any(axis=1)
+            if item.text.isdigit() or (item.text.isascii() and item.text.isupper()):
+                least_px = factor * item.arcmin * screen._replace(text=1.0).px_per_arcmin
+                assert stands_out.sum() >= least_px - 1.0, item
+            measured += 1
+    assert measured > 60
+
+
+def rgb(code: int) -> tuple[int, int, int]:
+    return code >> 16, code >> 8 & 255, code & 255
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_large_text_leaves_half_of_the_screen_to_the_road(size: tuple[int, int]) -> None:
+    instruments = panels_over_view(MANUAL, screen_of_size(*size)._replace(text=LARGE_TEXT))[-1]
+    assert instruments.y > 0.5 * size[1]
+
+
 @pytest.mark.parametrize("size", SIZES)
 def test_the_road_has_most_of_the_screen(size: tuple[int, int]) -> None:
     instruments = panels_over_view(MANUAL, screen_of_size(*size))[-1]
@@ -88,6 +145,36 @@ def test_a_message_hides_the_sky_only_while_there_is_one() -> None:
     part = (slice(int(box.y) + 2, int(box.bottom) - 2), slice(int(box.x) + 2, int(box.right) - 2))
     assert (free[part] != said[part]).any(axis=2).mean() > 0.9
     assert (shown(picture, screen, MANUAL) == free).all()
+
+
+@pytest.mark.parametrize("size", [*SIZES, (4200, 1050)])
+@pytest.mark.parametrize("factor", [1.0, LARGE_TEXT])
+def test_no_mirror_is_hidden_by_a_message_or_by_the_next_turn(size: tuple[int, int], factor: float) -> None:
+    screen = screen_of_size(*size)._replace(text=factor)
+    if screen.is_triple:
+        screen = screen._replace(screen_width_m=4.8)
+    said = MANUAL._replace(notice_label="lap 2", ahead=Ahead(350.0, 1.5, 3))
+    *hiding, instruments = panels_over_view(said, screen)
+    assert len(hiding) == 2
+    parts = road_parts(fit(screen, *size), instruments.y)
+    mirrors = looks(DriverViewProfile(), ShownVehicle(), SCENE.size, parts, *size)[1:]
+    assert len(mirrors) == 3
+    for look in mirrors:
+        left, bottom, width, height = look.viewport.pixels(*size)
+        top = size[1] - bottom - height
+        assert width < 6 * height
+        for box in (*hiding, instruments):
+            apart = left >= box.right or left + width <= box.x or top >= box.bottom or top + height <= box.y
+            assert apart, (look.viewport, box)
+
+
+def test_the_road_goes_on_at_the_same_height_on_displays_beside() -> None:
+    screen = screen_of_size(1400, 1050)
+    displays = {0: Box(1280, 0, 1400, 1050), 1: Box(0, 0, 1280, 1024)}
+    parts = road_parts(fit_span(screen, displays, 0), 800.0)
+    own, beside = (parts.displays[number].pixels(2680, 1050) for number in (0, 1))
+    assert own == parts.displays[None].pixels(2680, 1050) == (1280, 250, 1400, 800)
+    assert beside == (0, 250, 1280, 800)
 
 
 def test_stale_data_is_said_and_no_number_is_frozen() -> None:

@@ -39,7 +39,7 @@ def redness(picture: Pixels) -> np.ndarray:
 def test_a_mark_lands_within_a_pixel_of_where_it_should(mirror: bool, sample: Sample) -> None:
     """A small glowing cube anywhere in sight: the middle of its pixels against the projection by numpy alone."""
     generator = np.random.Generator(np.random.PCG64(sample.seed))
-    empty = view_scene(None, 0.0, SIZE)
+    empty = view_scene(None, (), SIZE)
     for _ in range(sample.of(12, 300)):
         eye = np.array((*generator.uniform(-40.0, 40.0, 2), generator.uniform(0.9, 3.0)))
         axes = rotation(generator.uniform(-math.pi, math.pi), generator.normal(0.0, 0.05), generator.normal(0.0, 0.05))
@@ -66,7 +66,7 @@ def test_what_lies_on_the_road_is_seen_whole() -> None:
         corners = np.array([((-half, -half, 0.0), (half, -half, 0.0), (half, half, 0.0), (-half, half, 0.0))])
         return pieces(quads(corners + np.array((200.0, 0.0, 0.0)), colour, Material.GLOWING))
 
-    base = view_scene(None, 0.0, SIZE)
+    base = view_scene(None, (), SIZE)
     scene = base._replace(layers=(plate(190.0, (0, 0, 255)), plate(150.0, RED)), solids=pieces(joined([])))
     look = Look(Camera(np.array((0.0, 0.0, 6.0)), rotation(0.0)), Lens(0.9, 1.6), Viewport(), from_seat=False)
     picture = redness(drawn(scene, look))
@@ -77,7 +77,7 @@ def test_what_lies_on_the_road_is_seen_whole() -> None:
 
 
 def test_the_vehicle_is_outside_for_others_and_inside_for_its_driver() -> None:
-    scene = view_scene(None, 0.0, SIZE)
+    scene = view_scene(None, (), SIZE)
     shown = ShownVehicle()
     behind = Look(Camera(np.array((-9.0, 0.0, 2.5)), rotation(0.0, 0.12)), Lens(0.9, 1.6), Viewport(), from_seat=False)
     seat = Look(Camera(np.array(SIZE.eye_m), rotation(0.0)), Lens(1.0, 1.6), Viewport(), from_seat=True)
@@ -87,7 +87,7 @@ def test_the_vehicle_is_outside_for_others_and_inside_for_its_driver() -> None:
 
 
 def test_the_hand_wheel_turns_left_with_the_driver() -> None:
-    scene = view_scene(None, 0.0, SIZE)
+    scene = view_scene(None, (), SIZE)
     seat = Look(Camera(np.array(SIZE.eye_m), rotation(0.0, 0.4)), Lens(1.0, 1.6), Viewport(), from_seat=True)
 
     def mark(road_wheel_rad: float) -> float:
@@ -99,7 +99,7 @@ def test_the_hand_wheel_turns_left_with_the_driver() -> None:
 
 
 def test_brake_lamps_and_indicators_shine() -> None:
-    scene = view_scene(None, 0.0, SIZE)
+    scene = view_scene(None, (), SIZE)
     behind = Look(Camera(np.array((-6.0, 0.0, 1.2)), rotation(0.0, 0.1)), Lens(0.8, 1.6), Viewport(), from_seat=False)
     coasting, braking = (drawn(scene, behind, ShownVehicle(brake=brake)) for brake in (0.0, 0.5))
     assert redness(braking)[(coasting != braking).any(axis=2)].sum() > 200
@@ -111,7 +111,7 @@ def test_brake_lamps_and_indicators_shine() -> None:
 
 
 def test_a_house_throws_its_shadow_away_from_the_sun() -> None:
-    base = view_scene(None, 0.0, SIZE)
+    base = view_scene(None, (), SIZE)
     house = pieces(box(Box(0.0, 0.0, 0.0, 4.0, 4.0, 6.0), (200, 200, 200)))
     scene = base._replace(solids=house)
     above = Look(
@@ -128,8 +128,44 @@ def test_a_house_throws_its_shadow_away_from_the_sun() -> None:
     assert float(away @ np.array(DAY.sun[:2])) < 0.0
 
 
+@pytest.mark.parametrize("kind", [1.0, 3.0], ids=["car", "person"])
+def test_others_throw_a_shadow_too(kind: float) -> None:
+    above = Look(
+        Camera(np.array((0.0, 0.0, 30.0)), rotation(0.5 * math.pi, math.radians(89.9))), Lens(0.6, 1.6), Viewport(),
+        from_seat=False,
+    )  # fmt: skip
+    long_m, wide_m = (4.4, 1.8) if kind == 1.0 else (0.5, 0.5)
+    user = RoadUser(
+        id=1.0, kind=kind, x_m=0.0, y_m=0.0, yaw_rad=0.3, speed_mps=0.0, length_m=long_m, width_m=wide_m, height_m=1.6
+    )
+    here = ShownVehicle(x_m=-45.0, others=(user,))
+    scene = view_scene(None, (), SIZE)
+    lit = drawn(scene, above, here).astype(int).sum(axis=2)
+    shaded = drawn(scene, above, here, Quality(shadows=True)).astype(int).sum(axis=2)
+    rows, columns = np.nonzero(lit - shaded > 60)
+    assert len(rows) > 100
+    away = np.array((columns.mean() - 0.5 * WIDTH_PX, 0.5 * HEIGHT_PX - rows.mean()))
+    assert float(away @ np.array(DAY.sun[:2])) < 0.0
+
+
+def test_headlights_go_up_and_down_with_the_car() -> None:
+    wall = pieces(box(Box(25.0, 0.0, 0.0, 0.5, 20.0, 8.0), (200, 200, 200)))
+    scene = view_scene(None, (), SIZE)._replace(solids=wall)
+    level = Look(Camera(np.array((0.0, 0.0, 1.2)), rotation(0.0)), Lens(1.0, 1.6), Viewport(), from_seat=False)
+
+    def lit_rows(pitch_rad: float) -> int:
+        framebuffer = target(WIDTH_PX, HEIGHT_PX)
+        shown = ShownVehicle(x_m=-4.0, pitch_rad=pitch_rad)
+        Renderer(context(), scene, NIGHT, Quality(), 15.0).draw(framebuffer, [level], shown)
+        middle = pixels(framebuffer)[:, WIDTH_PX // 2].astype(int).sum(axis=1)
+        return int(np.nonzero(middle > 200)[0].min())
+
+    assert lit_rows(-0.1) < lit_rows(0.0) - 20  # nose up: higher on the wall
+    assert lit_rows(0.05) > lit_rows(0.0) + 10
+
+
 def test_night_is_dark_but_for_the_headlights() -> None:
-    scene = view_scene(None, 0.0, SIZE)
+    scene = view_scene(None, (), SIZE)
     framebuffer = target(WIDTH_PX, HEIGHT_PX)
     seat = Look(Camera(np.array(SIZE.eye_m), rotation(0.0)), Lens(1.0, 1.6), Viewport(), from_seat=True)
     Renderer(context(), scene, NIGHT, Quality(), 15.0).draw(framebuffer, [seat], ShownVehicle())
@@ -139,7 +175,7 @@ def test_night_is_dark_but_for_the_headlights() -> None:
 
 
 def test_a_mirror_stands_in_a_dark_frame() -> None:
-    scene, camera, lens = view_scene(None, 0.0, SIZE), Camera(np.array((0.0, 0.0, 1.2)), rotation(0.0)), Lens(0.6, 1.5)
+    scene, camera, lens = view_scene(None, (), SIZE), Camera(np.array((0.0, 0.0, 1.2)), rotation(0.0)), Lens(0.6, 1.5)
     whole = Look(camera, Lens(1.2, 1.6), Viewport(), from_seat=True)
     mirror = Look(camera, lens._replace(is_mirror=True), Viewport(0.5, 0.5, 0.25, 0.25), from_seat=True, is_mirror=True)
     framebuffer = target(WIDTH_PX, HEIGHT_PX)
@@ -154,8 +190,20 @@ def test_a_mirror_stands_in_a_dark_frame() -> None:
     assert picture[top:bottom, left - 8].max() > 30
 
 
+def test_a_mirror_is_told_from_the_night_around_it() -> None:
+    scene, camera, lens = view_scene(None, (), SIZE), Camera(np.array((0.0, 0.0, 1.2)), rotation(0.0)), Lens(0.6, 1.5)
+    whole = Look(camera, Lens(1.2, 1.6), Viewport(), from_seat=True)
+    mirror = Look(camera, lens._replace(is_mirror=True), Viewport(0.5, 0.6, 0.25, 0.25), from_seat=True, is_mirror=True)
+    framebuffer = target(WIDTH_PX, HEIGHT_PX)
+    Renderer(context(), scene, NIGHT, Quality(), 15.0).draw(framebuffer, [whole, mirror], ShownVehicle(x_m=-500.0))
+    picture = pixels(framebuffer).astype(int)
+    rim, around, inside = picture[100, 318:320], picture[100, 300:310], picture[100, 325:335]
+    assert rim.min() > 1.5 * around.max()
+    assert rim.min() > 1.5 * inside.max()
+
+
 def test_other_vehicles_are_seen_where_they_are() -> None:
-    scene = view_scene(None, 0.0, SIZE)
+    scene = view_scene(None, (), SIZE)
     camera, lens = Camera(np.array((0.0, 0.0, 1.6)), rotation(0.0)), Lens(0.9, WIDTH_PX / HEIGHT_PX)
     look = Look(camera, lens, Viewport(), from_seat=False)
     user = RoadUser(
@@ -188,7 +236,7 @@ def world_parts_of_light(program: LightProgram | None) -> ViewScene:
     light = Light(0.0, 0.0, 0.0, program)
     path = np.array(((-50.0, 0.0), (50.0, 0.0)))
     drawing = Drawing((), (), (), (), (), (), (light,), path)
-    return view_scene(drawing, 0.0, SIZE)
+    return view_scene(drawing, (), SIZE)
 
 
 TOWARDS_LIGHT = Look(

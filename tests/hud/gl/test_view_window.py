@@ -16,12 +16,12 @@ from simconsole.hud.window.habits import Habits
 from simconsole.hud.window.ports import Motion, Ports
 from simconsole.hud.window.pygame_window import Window
 from simconsole.hud.window.window_loop import run
-from simconsole.profiles.view import DriverViewProfile, HudProfile
+from simconsole.profiles.view import DriverViewProfile, HudProfile, ViewScreen
 from simconsole.values.key_codes import Key
 from simconsole.values.state_vector import LAYOUT, PLATFORM_AT, Snapshot
 
 PROFILE = HudProfile(width_px=640, height_px=480, rate_hz=240, view=DriverViewProfile())
-SCENE = view_scene(None, 0.0, Size(3.99, 1.75, 1.45, 0.75, 2.5))
+SCENE = view_scene(None, (), Size(3.99, 1.75, 1.45, 0.75, 2.5))
 
 
 @pytest.fixture(autouse=True)
@@ -128,6 +128,47 @@ def test_a_window_of_another_shape_has_bars_and_the_same_picture() -> None:
         assert not picture[height - bar + 1 :].any()
         assert picture[height // 2].any(axis=1).all()
     window.close()
+
+
+def test_screens_on_displays_of_their_own_share_one_window(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Three displays, the middle one with the instruments; which of them a window was opened on tells its place."""
+    places = {0: (640, 0), 1: (0, 0), 2: (1280, 0)}
+    opened_on: list[int] = []
+    plain = pygame.display.set_mode
+
+    def set_mode(size: tuple[int, int], **options: int) -> pygame.Surface:
+        opened_on.append(options.pop("display"))
+        return plain(size, **options)
+
+    monkeypatch.setattr(pygame.display, "get_desktop_sizes", lambda: [(640, 480)] * 3)
+    monkeypatch.setattr(pygame.display, "set_mode", set_mode)
+    monkeypatch.setattr(pygame.display, "get_window_position", lambda: places[opened_on[-1]])
+    moved_to: list[tuple[int, int]] = []
+    monkeypatch.setattr(pygame.display, "set_window_position", moved_to.append)
+    screens = (
+        ViewScreen(yaw_deg=60.0, display=1), ViewScreen(), ViewScreen(yaw_deg=-60.0, display=2),
+    )  # fmt: skip
+    view = DriverViewProfile(mirrors=False, screens=screens)
+    window = open_window(replace(PROFILE, view=view), HudSettings(), scene=SCENE)
+    assert isinstance(window, ViewWindow)
+    assert moved_to == [(0, 0)]
+    assert pygame.display.get_window_size() == (1920, 480)
+    window.frame(snapshot(1), 1.0)
+    picture = np.frombuffer(window._target.read(components=3), np.uint8).reshape(480, 1920, 3)[::-1]
+    line = 240  # above the instruments
+    assert all(picture[line, 640 * number : 640 * (number + 1)].any(axis=1).all() for number in range(3))
+    assert not picture[470, :640].any()
+    assert picture[440, 640:1280].any()
+    assert not picture[470, 1280:].any()
+    window.close()
+
+
+def test_a_display_that_is_not_there_is_named(capsys: pytest.CaptureFixture[str]) -> None:
+    view = DriverViewProfile(screens=(ViewScreen(), ViewScreen(display=4)))
+    window = open_window(replace(PROFILE, view=view), HudSettings(), scene=SCENE)
+    assert isinstance(window, Window)
+    window.close()
+    assert "hud.view.screens.display: value 4: connected are 0 to 0" in capsys.readouterr().err
 
 
 def test_help_is_laid_over_the_road() -> None:

@@ -137,8 +137,17 @@ def drawn(item: Rect | Polygon | Arc | Text) -> NDArray[np.bool_]:
     return pixels(surface)[:, :, 0] > 120
 
 
+def test_the_dots_of_a_capital_do_not_push_the_word_down() -> None:
+    plain, dotted = (drawn(Text(200.0, 150.0, text, 22.0, RED, "x")) for text in ("NEHMEN", "NEHMENÜ"))
+    assert np.flatnonzero(plain.any(axis=1))[-1] == np.flatnonzero(dotted[:, :240].any(axis=1))[-1]
+    assert np.flatnonzero(dotted.any(axis=1))[0] < np.flatnonzero(plain.any(axis=1))[0] - 3
+
+
 @pytest.mark.parametrize("anchor", ["l", "c", "r"])
-@pytest.mark.parametrize("text", ["H", "MANUAL", "refused: brake is pressed", "0123456789", "x1000 rpm", "100 %"])
+@pytest.mark.parametrize(
+    "text",
+    ["H", "MANUAL", "refused: brake is pressed", "0123456789", "x1000 rpm", "100 %", "Lenkrad anschließen", "30° L"],
+)
 def test_words_are_where_and_as_large_as_the_draw_list_says(text: str, anchor: str) -> None:
     item = Text({"l": 20.0, "c": 200.0, "r": 380.0}[anchor], 150.0, text, 22.0, RED, "x", anchor)
     mask = drawn(item)

@@ -7,43 +7,55 @@ from typing import Any
 
 import pytest
 
-from simconsole.scene.timeline import PLOTS
-from simconsole.scene.viewer.blueprint import MAP
+from simconsole.scene.lanes import LANES, WHO_DRIVES
+from simconsole.scene.plots import PLOTS
+from simconsole.scene.viewer.standing import MAP
+from tests.paths import ROOT
 
 PROGRAM = """
 import json
 import numpy as np
-from simconsole.profiles.view import SceneProfile
 from simconsole.scene.viewer.blueprint import blueprint
+from tests.scene.drives import job
 
 def views(part):
     inner = getattr(part, "contents", None)
     return [view for each in inner for view in views(each)] if isinstance(inner, (list, tuple)) else [part]
 
-def shown(path):
+def shown(path, camera):
     found = {}
-    for view in views(blueprint(SceneProfile(), 1.0, path).root_container):
+    for view in views(blueprint(job()._replace(has_camera=camera), path, is_live=True).root_container):
         bounds = view.properties.get("VisualBounds2D")
         found[view.name] = [view.origin, bounds and bounds.range.as_arrow_array().to_pylist()[0]]
     return found
 
-print(json.dumps([shown(None), shown(np.array([[0.0, 10.0, 5.0], [100.0, 60.0, 5.0]]))]))
+print(json.dumps([shown(None, False), shown(np.array([[0.0, 10.0, 5.0], [100.0, 60.0, 5.0]]), True)]))
 """
 
 
 @pytest.fixture(scope="module")
 def shown() -> list[dict[str, Any]]:
     """Origin and bounds of each view by its name, without a path and with one."""
-    done = subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, text=True, check=True)
+    done = subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, text=True, check=True, cwd=ROOT)
     found: list[dict[str, Any]] = json.loads(done.stdout)
     return found
 
 
-def test_every_plot_has_a_view_beside_chase_map_lanes_and_log(shown: list[dict[str, Any]]) -> None:
+def test_every_plot_has_a_view_beside_lanes_chase_map_and_log(shown: list[dict[str, Any]]) -> None:
+    always = {"who drives", "chase", "health", "log", "controls", "latency", "map", *(plot.title for plot in PLOTS)}
+    assert [set(found) for found in shown] == [always, always | {"camera"}]
     for found in shown:
-        assert set(found) == {"chase", "map", "who drives", "log", *(plot.title for plot in PLOTS)}
         assert [found[plot.title][0] for plot in PLOTS] == [f"/{plot.path}" for plot in PLOTS]
         assert found["map"][0] == f"/{MAP}"
+
+
+def test_who_drives_stands_first_and_its_mode_above_all(shown: list[dict[str, Any]]) -> None:
+    for found in shown:
+        assert next(iter(found)) == "who drives"
+        assert found["who drives"][0] == f"/{WHO_DRIVES}"
+    lanes = sorted(kind.path for kind in LANES if kind.path.startswith(f"{WHO_DRIVES}/"))  # as rerun sorts them
+    assert lanes[0] == f"{WHO_DRIVES}/mode"
+    assert len(lanes) <= 3, "as many as have room"
 
 
 def test_map_shows_the_whole_path_with_a_margin_and_its_y_down(shown: list[dict[str, Any]]) -> None:

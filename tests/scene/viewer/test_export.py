@@ -8,18 +8,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from simconsole.scene.entities import Dimensions
-from simconsole.scene.timeline import PLOTS
-from simconsole.scene.viewer.job import Job, save_job
-from tests.scene.drives import job, rows
+from simconsole.scene.lanes import LANES
+from simconsole.scene.plots import PLOTS
+from tests.paths import ROOT
+from tests.scene.drives import rows
 
 WORLD = {"/world/road/surface", "/world/road/paint", "/world/road/edges", "/world/road/centre", "/world/road/ground",
          "/world/path/theoretical", "/world/lights/posts", "/world/lights/lamps", "/map/road/edges",
          "/map/path/theoretical", "/map/lights"}  # fmt: skip
-DRIVE = {"/world/ego", "/world/ego/body", "/world/path/driven", "/map/ego", "/map/path/driven", "/lanes/mode",
-         "/lanes/remote", "/lanes/takeover", "/lanes/transmission", "/lanes/turn_indicators", "/lanes/hazard_lights",
-         "/log",
-         *(f"/{plot.path}" for plot in PLOTS)}  # fmt: skip
+DRIVE = {"/world/ego", "/world/ego/body", "/world/path/driven", "/map/ego", "/map/path/driven", "/log",
+         "/world/ego/wheels", "/world/ego/tyre_forces", "/world/path/ahead", "/map/path/ahead",
+         "/world/path/plan", "/world/path/plan/places", "/map/path/plan",
+         *(f"/{kind.path}" for kind in LANES), *(f"/{plot.path}" for plot in PLOTS)}  # fmt: skip
 
 
 def rerun_rrd(*arguments: str) -> subprocess.CompletedProcess[str]:
@@ -50,32 +50,34 @@ import sys
 from pathlib import Path
 import numpy as np
 from simconsole.scene.viewer.export import export
-from simconsole.scene.viewer.job import load_job
+from tests.scene.drives import job
 from simconsole.values.errors import WorkerError
+from simconsole.values.planned_path import PlannedPath
 
 folder, path, block = Path(sys.argv[1]), Path(sys.argv[2]), int(sys.argv[3])
 rows = np.load(folder / "rows.npy")
 ticks = np.arange(1, len(rows) + 1)
+places = np.ones((21, 4))
+plans = [PlannedPath(200_000_000 * number, places) for number in range(1, 31)] if sys.argv[4] == "car" else ()
 blocks = [(ticks[at : at + block], rows[at : at + block]) for at in range(0, len(rows), block)]
 try:
-    export(load_job(folder / "job.npz"), blocks, path)
+    export(job(kind=sys.argv[4]), blocks, path, plans=plans)
 except WorkerError as problem:
     sys.exit(str(problem))
 """
 
 
-def exported(folder: Path, path: Path, wanted: Job, count: int, block: int = 1000) -> str:
+def exported(folder: Path, path: Path, kind: str, count: int, block: int = 1000) -> str:
     """Export a drive of `count` ticks and return what was said about it."""
-    save_job(folder / "job.npz", wanted)
     np.save(folder / "rows.npy", rows(count))
-    words = [sys.executable, "-c", WRITER, str(folder), str(path), str(block)]
-    return subprocess.run(words, capture_output=True, text=True, check=False).stderr
+    words = [sys.executable, "-c", WRITER, str(folder), str(path), str(block), kind]
+    return subprocess.run(words, capture_output=True, text=True, check=False, cwd=ROOT).stderr
 
 
 @pytest.fixture(scope="module")
 def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("scene") / "scene.rrd"
-    assert exported(tmp_path_factory.mktemp("job"), path, job(), 3000) == ""
+    assert exported(tmp_path_factory.mktemp("job"), path, "car", 3000) == ""
     return path
 
 
@@ -92,6 +94,7 @@ def test_the_recording_holds_world_and_drive(recording: Path) -> None:
     assert found["/world/ego"] == 600
     assert found["/lanes/mode"] == 5 + 1
     assert found["/log"] == 7
+    assert found["/world/path/plan"] == 30 + 1 + 1, "its look, 30 plans, and that there is none after the last"
 
 
 def test_the_recording_brings_its_blueprint(recording: Path) -> None:
@@ -103,23 +106,23 @@ def test_the_recording_brings_its_blueprint(recording: Path) -> None:
 
 def test_a_drive_without_a_course_is_shown_too(tmp_path: Path) -> None:
     path = tmp_path / "ball.rrd"
-    ball = job(with_course=False)._replace(dimensions=Dimensions(1.0, 1.0, 1.0, 0.5))
-    assert exported(tmp_path, path, ball, 500) == ""
+    assert exported(tmp_path, path, "ball", 500) == ""
     assert rerun_rrd("verify", str(path)).returncode == 0
     found = contents(path)
     assert not WORLD & set(found)
     assert found["/world/ego"] == 100
+    assert found["/world/path/plan"] == 1
 
 
 def test_the_blocks_in_which_a_drive_comes_change_nothing_of_what_it_was(tmp_path: Path, recording: Path) -> None:
     path = tmp_path / "scene.rrd"
-    assert exported(tmp_path, path, job(), 3000, 170) == ""
+    assert exported(tmp_path, path, "car", 3000, 170) == ""
     strips = {"/world/path/driven", "/map/path/driven"}  # one of them ends with each block
     found, whole = contents(path), contents(recording)
     assert {name: found[name] for name in DRIVE - strips} == {name: whole[name] for name in DRIVE - strips}
 
 
 def test_a_folder_that_is_not_there_leaves_a_clear_line(tmp_path: Path) -> None:
-    said = exported(tmp_path, tmp_path / "nowhere" / "scene.rrd", job(), 10)
+    said = exported(tmp_path, tmp_path / "nowhere" / "scene.rrd", "car", 10)
     assert re.search(r"scene\.rrd.*cannot be written", said.splitlines()[-1])
     assert "Traceback" not in said

@@ -4,21 +4,25 @@ from pathlib import Path
 
 import numpy as np
 
-from simconsole.scene.viewer.job import save_job
-from tests.scene.drives import job, rows
+from simconsole.scene.viewer.live_file import HEAD
+from tests.paths import ROOT
+from tests.scene.drives import rows
 from tests.scene.viewer.test_export import DRIVE, WORLD, contents, rerun_rrd
 
 # The live drive is fed whole state vectors, 100 ticks at a time, as a ring gives them.
 FEEDER = """
-import sys
+import itertools, sys
 from pathlib import Path
 import numpy as np
+from simconsole.processes.notices import Notice
 from simconsole.values.state_vector import Snapshot
-from simconsole.scene.viewer.follow import Ports, follow
-from simconsole.scene.viewer.job import load_job
+from simconsole.scene.timeline import Entry
+from simconsole.values.planned_path import PlannedPath
+from simconsole.scene.viewer.follow import Ports, Shot, follow
+from tests.scene.drives import job as make_job
 
 folder = Path(sys.argv[1])
-job, rows = load_job(folder / "job.npz"), np.load(folder / "rows.npy")
+job, rows = make_job()._replace(has_camera=True), np.load(folder / "rows.npy")
 given = 0
 def new_ticks():
     global given
@@ -33,16 +37,31 @@ if sys.argv[3] == "die":
             os.kill(os.getpid(), signal.SIGKILL)
 states = iter(["nobody"] * 2 + ["1 client"] * 9 + ["lost"] * 999)
 link = (lambda: next(states)) if sys.argv[3] == "link" else lambda: None
-follow(Ports(new_ticks, stop, link=link), job._replace(profile=job.profile.__class__(chunk_s=0.05)), Path(sys.argv[2]))
+if sys.argv[3] == "plans":
+    told = iter([PlannedPath(400_000_000 * number, np.ones((21, 4))) for number in range(1, 11)])
+    def plans():
+        plan = next(told, None)
+        return [] if plan is None else [plan]
+else:
+    plans = tuple
+pictures = {"camera": lambda: Shot(given // 500, b"no picture")} if sys.argv[3] == "beside" else {}
+hops = {"receive, hud": {"p50": 410.0, "p99": 800.0, "max": 900.0, "count": 7.0}}
+lines = iter([[Entry(1, "INFO", "operator: mark")]])
+if sys.argv[3] == "beside":
+    clock = itertools.count(0.0, 0.06)  # which passes by being asked
+    notices = iter([[Notice("WARN", "supervisor: the hud worker has ended (signal 9) and is started again")]])
+    pictures["notices"] = lambda: next(notices, [])
+    pictures |= {"latencies": lambda: hops, "entries": lambda: next(lines, []), "clock_s": lambda: next(clock)}
+job = job._replace(profile=job.profile.__class__(chunk_s=0.05))
+follow(Ports(new_ticks, stop, plans=plans, link=link, **pictures), job, Path(sys.argv[2]))
 """
 
 
 def follow_apart(folder: Path, ending: str) -> tuple[int, Path]:
-    save_job(folder / "job.npz", job())
     np.save(folder / "rows.npy", rows(3000))
     path = folder / "scene.rrd"
     done = subprocess.run(
-        [sys.executable, "-c", FEEDER, str(folder), str(path), ending], capture_output=True, check=False
+        [sys.executable, "-c", FEEDER, str(folder), str(path), ending], capture_output=True, check=False, cwd=ROOT
     )
     assert not done.stderr, "rerun is not to complain on the console's terminal"
     return done.returncode, path
@@ -66,20 +85,52 @@ def test_a_killed_scene_leaves_what_it_had_written(tmp_path: Path) -> None:
     assert "/world/road/surface" in printed.stdout
 
 
-def test_a_live_drive_has_no_index_and_is_read_from_its_beginning(tmp_path: Path) -> None:
-    """What a viewer does that opens it; the index of scene.rrd stands at its end."""
+def test_a_live_drive_is_one_stream_without_an_end(tmp_path: Path) -> None:
+    """Whoever follows the file reads on; the index of scene.rrd stands at its end."""
     code, path = follow_apart(tmp_path, "stop")
     assert code == 0
+    content = path.read_bytes()
+    assert content.startswith(HEAD)
+    assert content.count(HEAD + b"FOOT") == 0
     verified = rerun_rrd("verify", str(path))
     assert "1 errors" in verified.stderr
     assert "Missing RRD footer" in verified.stdout + verified.stderr
-    routed = rerun_rrd("stats", str(path))
-    assert routed.returncode == 0
+
+
+def test_a_scene_that_was_restarted_goes_on_in_the_same_file(tmp_path: Path) -> None:
+    code, path = follow_apart(tmp_path, "die")
+    assert code == -9
+    before, killed = contents(path), path.read_bytes()
+    code, path = follow_apart(tmp_path, "stop")
+    assert code == 0
+    assert path.read_bytes().startswith(killed)
+    found = contents(path)
+    assert found["/world/ego"] == before["/world/ego"] + 600
+    assert found["/world/road/surface"] == 2, "said again by the new process"
 
 
 def test_how_the_bridge_stands_is_a_lane_of_a_live_drive_that_has_one(tmp_path: Path) -> None:
     code, path = follow_apart(tmp_path, "link")
     assert code == 0
-    assert contents(path)["/lanes/link"] == 3
-    code, path = follow_apart(tmp_path, "stop")
-    assert "/lanes/link" not in contents(path)
+    assert contents(path)["/health/bridge"] == 3 + 1
+    other = tmp_path / "other"
+    other.mkdir()
+    code, path = follow_apart(other, "stop")
+    assert contents(path)["/health/bridge"] == 1, "its colours only"
+
+
+def test_pictures_latencies_and_words_are_shown_at_the_newest_tick(tmp_path: Path) -> None:
+    code, path = follow_apart(tmp_path, "beside")
+    assert code == 0
+    found = contents(path)
+    assert 2 <= found["/camera"] <= 7, "each picture once, and none that was not the newest"
+    assert 4 <= found["/latency"] <= 8, "once a second of the clock, of 30 batches"
+    assert found["/log"] == 7 + 1 + 1, "the operator's act and the supervisor's notice"
+
+
+def test_plans_are_shown_live_as_in_the_recording_and_go_when_nobody_renews_them(tmp_path: Path) -> None:
+    code, path = follow_apart(tmp_path, "plans")
+    assert code == 0
+    found = contents(path)
+    for entity in ("/world/path/plan", "/world/path/plan/places", "/map/path/plan"):
+        assert found[entity] == 1 + 10 + 1, entity

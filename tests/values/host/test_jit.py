@@ -14,7 +14,7 @@ import pytest
 
 from simconsole.values.host import jit as compiling
 from simconsole.values.host.jit import compiled, digest, plain
-from simconsole.values.kernels import Row, kernel
+from simconsole.values.kernels import Row, kernel, stage
 from simconsole.values.layout import Part, read
 from tests.paths import ROOT
 
@@ -100,6 +100,16 @@ def reach(placed: Placed) -> float:
     return placed.place.x + placed.size
 
 
+@stage
+def halved(value: float) -> float:
+    return 0.5 * scaled(value)
+
+
+@kernel
+def quartered(value: float) -> float:
+    return halved(value) + halved(-0.5 * value)
+
+
 @pytest.fixture(autouse=True)
 def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
@@ -128,6 +138,18 @@ def test_compiled_code_is_cached_for_the_entry_only(own_cache: Path) -> None:
     compiled(summed)(np.ones(4), 0.0)
     assert [folder.name for folder in own_cache.iterdir()] == [digest(summed)]
     assert list((own_cache / digest(summed)).rglob("*.nbc"))
+
+
+def test_a_stage_is_compiled_once_for_all_that_call_it(own_cache: Path) -> None:
+    assert compiled(quartered)(8.0) == quartered(8.0) == 4.0
+    assert {folder.name for folder in own_cache.iterdir()} == {digest(quartered), digest(halved)}
+    twin = compiled(halved)
+    assert twin(8.0) == 8.0
+    assert sum(twin.stats.cache_misses.values()) == 1  # type: ignore[attr-defined]  # compiled with its caller
+    assert isinstance(halved, types.FunctionType)
+    inlined = altered(halved)
+    kernel(inlined)
+    assert digest(inlined) != digest(halved)
 
 
 def test_compiled_code_is_found_from_another_place(tmp_path: Path) -> None:

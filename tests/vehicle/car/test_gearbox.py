@@ -7,6 +7,7 @@ import pytest
 from simconsole.values.platform import Ground
 from simconsole.values.signals import GearFault, Request
 from simconsole.values.units import KMH_PER_MPS
+from simconsole.vehicle.car.aids import ANY_NM
 from simconsole.vehicle.car.gearbox import Turning, bite, gear_ratio, gearbox_step
 from simconsole.vehicle.car.state import Gearbox
 from tests.samples import Sample
@@ -148,7 +149,7 @@ def test_ratios_and_bite() -> None:
 def test_lever_between_two_gears_is_neutral() -> None:
     box = Gearbox(3.0, 0.0, 1.0, 3.0, 0.0, 1.0, 0.0)
     request = Request(0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    turning = Turning(engine_radps=150.0, wheel_radps=20.0, vx_mps=6.0, asked_nm=0.0, hot=0.0)
+    turning = Turning(engine_radps=150.0, wheel_radps=20.0, vx_mps=6.0, asked_nm=0.0, most_nm=ANY_NM, hot=0.0)
     assert gearbox_step(CAR.gears, box, request, turning, STEP_S).gear == 0.0
     assert gearbox_step(CAR.gears, box, request._replace(gear=4.0), turning, STEP_S).gear == 4.0
 
@@ -156,7 +157,7 @@ def test_lever_between_two_gears_is_neutral() -> None:
 def test_automatic_taking_over_in_neutral_at_speed_finds_the_gear() -> None:
     box = Gearbox(0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0)
     request = Request(0.0, 0.3, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0)
-    turning = Turning(engine_radps=84.0, wheel_radps=25.0 / 0.306, vx_mps=25.0, asked_nm=0.0, hot=0.0)
+    turning = Turning(engine_radps=84.0, wheel_radps=25.0 / 0.306, vx_mps=25.0, asked_nm=0.0, most_nm=ANY_NM, hot=0.0)
     shifting = gearbox_step(CAR.gears, box, request, turning, STEP_S)
     assert shifting.wanted_gear == 4.0, "3065 rpm, where fifth would have 2460 and third 4040"
     assert shifting.lever_adopted == 0.0

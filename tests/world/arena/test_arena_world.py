@@ -63,7 +63,7 @@ def test_walls_are_seen_by_driver_and_operators_and_no_trees_grow_indoors() -> N
     again = from_arrays(to_arrays(drawing))
     assert again is not None
     assert all((a == b).all() for a, b in zip(drawing.walls, again.walls, strict=True))
-    parts = {part.name: part.mesh for part in world_parts(drawing, 0.0)}
+    parts = {part.name: part.mesh for part in world_parts(drawing, ())}
     assert parts["walls"]["position"][:, 2].max() == 0.5
     assert len(parts["trees"]) == len(parts["buildings"]) == len(parts["kerbs"]) == 0
     shapes = world_shapes(drawing)

@@ -44,7 +44,7 @@ def test_country_road_has_hills_and_skid_pad_has_cones() -> None:
     assert isinstance(pad, RoadsProfile)
     heights = [height for lane in open_map(country).lanes for height in lane.line[:, 2].tolist()]
     assert max(heights) - min(heights) > 30.0
-    assert len(open_map(pad).obstacles) == 28
+    assert [thing.kind for thing in open_map(pad).obstacles] == ["cone"] * 28
 
 
 def test_nothing_is_the_route_of_no_world() -> None:
@@ -67,7 +67,7 @@ def test_polygons_lie_beside_the_map_and_their_report_joins_its(tmp_path: Path) 
     profile = load_world(str(tmp_path / "w.yaml"))
     assert isinstance(profile, RoadsProfile)
     found = open_map(profile)
-    assert [outline.tolist() for outline in found.obstacles] == [[[0.0, 0.0], [5.0, 0.0], [5.0, 5.0], [0.0, 5.0]]]
+    assert [thing.outline.tolist() for thing in found.obstacles] == [[[0.0, 0.0], [5.0, 0.0], [5.0, 5.0], [0.0, 5.0]]]
     assert [part.element for part in found.report.skipped] == ["x"]
 
 

@@ -6,7 +6,7 @@ from simconsole.values.signals import FAR, NO_RULES_BROKEN, NO_SITUATION, Rules,
 from simconsole.world.rules.breaches import (
     JUNCTION_M,
     OFF_ROAD_S,
-    RED_LIGHT_S,
+    SHOWN_S,
     SPEEDING_MPS,
     SPEEDING_S,
     WRONG_WAY_S,
@@ -31,9 +31,9 @@ class Judge:
         self.rules = NO_RULES_BROKEN
         self.was = HERE
 
-    def after(self, s: float, place: Place = DRIVING, now: Situation = HERE) -> Rules:
+    def after(self, s: float, place: Place = DRIVING, now: Situation = HERE, touched: float = 0.0) -> Rules:
         for _ in range(round(s / TICK_S)):
-            self.rules = judged(self.rules, self.was, now, place, TICK_S)
+            self.rules = judged(self.rules, self.was, now, place, touched, TICK_S)
             self.was = now
         return self.rules
 
@@ -70,7 +70,7 @@ def test_a_stop_line_passed_at_red_is_an_event_that_is_shown_for_a_while(state: 
     judge.after(0.1, now=before_line(0.01, state))
     red = state in (SignalState.STOP_AND_REMAIN, SignalState.PRE_MOVEMENT)
     assert judge.after(TICK_S, now=before_line(-0.01, state)).red_light == float(red)
-    assert judge.after(RED_LIGHT_S - 0.1, now=before_line(-3.0, state)).red_light == float(red)
+    assert judge.after(SHOWN_S - 0.1, now=before_line(-3.0, state)).red_light == float(red)
     assert judge.after(0.2).red_light == 0.0
 
 
@@ -125,4 +125,4 @@ def test_who_drives_on_before_somebody_who_goes_first_fails_to_yield(
     judge = Judge()
     judge.was = was
     assert judge.after(TICK_S, now=now).failing_to_yield == float(fails)
-    assert judge.after(RED_LIGHT_S + 0.1).failing_to_yield == 0.0
+    assert judge.after(SHOWN_S + 0.1).failing_to_yield == 0.0

@@ -125,6 +125,15 @@ def test_ring_goes_first_within_the_critical_headway(to_m: float, speed_mps: flo
         assert owed.yield_s == pytest.approx((to_m - 2.0) / speed_mps, abs=0.2)
 
 
+def test_who_indicates_to_leave_the_ring_is_not_waited_for() -> None:
+    entry = ring()
+    goes_on, leaves = on_ring(entry, 20.0, 8.0), on_ring(entry, 20.0, 8.0)
+    leaves[:, 10] = -1.0
+    there = before(entry.line_m, 1.0, 0.0)
+    assert RightOfWay(urban()).owed(there, goes_on, dark) != NOTHING_OWED
+    assert RightOfWay(urban()).owed(there, leaves, dark) == NOTHING_OWED
+
+
 def test_who_has_stood_for_a_while_lets_others_go() -> None:
     entry, right_of_way = ring(), RightOfWay(urban())
     waiting = on_ring(entry, 20.0, 0.0)

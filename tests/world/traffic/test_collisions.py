@@ -3,7 +3,8 @@ import math
 import numpy as np
 import pytest
 
-from simconsole.world.traffic.collisions import overlap, overlapping, struck
+from simconsole.values.host.jit import plain
+from simconsole.world.traffic.collisions import Struck, overlap, overlapping
 from simconsole.world.traffic.road_users import NOBODY, Box, RoadUser, table
 from tests.samples import Sample
 from tests.world.traffic.made import box
@@ -66,6 +67,6 @@ def test_overlap_is_what_a_fine_raster_sees(sample: Sample) -> None:
 
 def test_who_is_struck_and_which_pairs_overlap() -> None:
     users = table([as_user(box(0.5, 0.5), 1.0), as_user(box(30.0, 0.0), 2.0), as_user(box(31.0, 0.5), 3.0)])
-    assert [user.id for user in struck(box(0.0, 0.0), users)] == [1.0]
+    assert [user.id for user in Struck(plain).by(box(0.0, 0.0), users)] == [1.0]
     assert overlapping(users) == [(1, 2)]
-    assert struck(box(0.0, 0.0), NOBODY) == []
+    assert Struck(plain).by(box(0.0, 0.0), NOBODY) == []

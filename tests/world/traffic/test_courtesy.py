@@ -22,7 +22,7 @@ def kept_after(time_s: float, light: int, speed_mps: float = 0.0) -> bool:
     courtesy, box, kept_free = watched(light)
     box[at.SPEED] = speed_mps
     for _ in range(round(time_s / 0.1)):
-        courtesy.step(box, 0.1)
+        courtesy.step(box.tolist(), 0.1)
     return bool(kept_free.any())
 
 

@@ -22,6 +22,16 @@ def test_speeds_follow_the_script_no_faster_than_it_accelerates() -> None:
     assert seen[-1].y_m == 0.0
 
 
+def test_who_has_collided_comes_to_rest() -> None:
+    one = driver(SpeedFrom(speed_kmh=36.0))
+    for _ in range(100):
+        before = one.step(0.1)
+    one.crash(-0.5 * before.speed_mps)
+    speeds = [one.step(0.1).speed_mps for _ in range(100)]
+    assert 0.0 < speeds[0] < 0.6 * before.speed_mps
+    assert speeds[-1] == 0.0
+
+
 def test_nothing_is_driven_before_the_first_speed() -> None:
     one = driver(SpeedFrom(from_s=5.0, speed_kmh=36.0))
     assert [one.step(1.0).x_m for _ in range(4)] == pytest.approx([25.0] * 4)

@@ -32,6 +32,15 @@ def test_messages_and_records_bring_back_every_bit(count: int) -> None:
     assert to_record(rows)[0] == count
 
 
+def test_tables_of_before_heights_and_indicators_are_read() -> None:
+    rows = table(some(3))[:, :9]
+    read = from_bytes(to_bytes(rows), "float64[9]")
+    assert (read[:, :9] == rows).all()
+    assert not read[:, 9:].any()
+    with pytest.raises(ValueError, match=r"encoding 'float64\[7\]'"):
+        from_bytes(b"", "float64[7]")
+
+
 def test_message_is_little_endian_rows_of_fields() -> None:
     user = RoadUser(
         id=7.0,

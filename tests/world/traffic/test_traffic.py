@@ -142,7 +142,7 @@ def test_the_ego_is_an_obstacle() -> None:
     traffic = Traffic(road_map, TrafficProfile(seed=1, vehicles=4, parked=0), compiled, ego=ego)
     for _ in range(2000):
         rows = traffic.step(ego)
-        assert overlapping(np.vstack((rows, [(-1.0, 1.0, 60.0, -1.6, 0.0, 0.0, 4.5, 1.8, 1.5)]))) == []
+        assert overlapping(np.vstack((rows, [(-1.0, 1.0, 60.0, -1.6, 0.0, 0.0, 4.5, 1.8, 1.5, 0.0, 0.0)]))) == []
     behind = [user for user in users(rows) if user.x_m < 60.0]
     assert behind
     nearest = max(user.x_m + 0.5 * user.length_m for user in behind)

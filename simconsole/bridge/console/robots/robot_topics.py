@@ -14,7 +14,6 @@ from simconsole.bridge.console.published_tick import (
     prefixed,
     quaternion,
 )
-from simconsole.bridge.console.robots.laser_scan import Execution, LaserScanner
 from simconsole.bridge.messages import Registry
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.vehicle import TurtlebotProfile, VehicleProfile
@@ -24,6 +23,7 @@ from simconsole.values.layout import read
 from simconsole.values.units import NS_PER_S, STANDARD_GRAVITY_MPS2
 from simconsole.vehicle.turtlebot.robot_state import ROBOT, RobotState
 from simconsole.world.arena.arena_world import ArenaWorld
+from simconsole.world.arena.laser_scan import Execution, LaserScanner
 from simconsole.world.arena.lidar import TWO_PI
 from simconsole.world.arena.raycast import ray_grid
 
@@ -67,17 +67,18 @@ class RobotTopics:
 
     def topics(self) -> tuple[OutputTopic, ...]:
         """Return the table under the standard names, odometry last."""
-        scan = OutputTopic(SCAN, "sensor_msgs/LaserScan", 1.0 / self._profile.lidar.turn_s, self._scan)
+        scan = OutputTopic(SCAN, "sensor_msgs/LaserScan", 1.0 / self._profile.lidar.turn_s, self._scan, measured=True)
         return (
             OutputTopic(TF_STATIC, "tf2_msgs/TFMessage", ONCE, self._tf_static),
-            OutputTopic(TF, "tf2_msgs/TFMessage", 30.0, self._tf),
-            OutputTopic(IMU, "sensor_msgs/Imu", 200.0, self._imu),
-            OutputTopic(MAGNETIC_FIELD, "sensor_msgs/MagneticField", 30.0, self._magnetic_field),
-            OutputTopic(JOINT_STATES, "sensor_msgs/JointState", 30.0, self._joint_states),
-            OutputTopic(BATTERY, "sensor_msgs/BatteryState", 1.0, self._battery),
-            OutputTopic(SENSORS, "turtlebot3_msgs/SensorState", 30.0, self._sensors),
+            # Who localises tells the transform from map to odom by this topic, too.
+            OutputTopic(TF, "tf2_msgs/TFMessage", 30.0, self._tf, measured=True, shared=True),
+            OutputTopic(IMU, "sensor_msgs/Imu", 200.0, self._imu, measured=True),
+            OutputTopic(MAGNETIC_FIELD, "sensor_msgs/MagneticField", 30.0, self._magnetic_field, measured=True),
+            OutputTopic(JOINT_STATES, "sensor_msgs/JointState", 30.0, self._joint_states, measured=True),
+            OutputTopic(BATTERY, "sensor_msgs/BatteryState", 1.0, self._battery, measured=True),
+            OutputTopic(SENSORS, "turtlebot3_msgs/SensorState", 30.0, self._sensors, measured=True),
             *((scan,) if self._scanner is not None else ()),
-            OutputTopic(ODOMETRY, "nav_msgs/Odometry", 30.0, self._odometry),
+            OutputTopic(ODOMETRY, "nav_msgs/Odometry", 30.0, self._odometry, measured=True),
         )
 
     def _frame(self, name: str) -> str:

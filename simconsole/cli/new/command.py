@@ -1,0 +1,72 @@
+"""`simconsole new KIND NAME`: a template that runs at once, and a test beside it."""
+
+import re
+from argparse import Namespace
+from pathlib import Path
+from string import Template
+from typing import Final
+
+from simconsole.cli.new import texts
+from simconsole.cli.outcome import Outcome
+from simconsole.profiles.files.loader import find
+from simconsole.values.errors import ProfileError
+
+KINDS: Final = {
+    "controller": {"$name.py": texts.CONTROLLER, "test_$name.py": texts.TEST_CONTROLLER},
+    "scenario": {"$name.yaml": texts.SCENARIO, "test_$name.py": texts.TEST_SCENARIO},
+    "vehicle": {"test_$name.py": texts.TEST_VEHICLE},
+    "world": {"$name.plan.yaml": texts.WORLD_PLAN, "test_$name.py": texts.TEST_WORLD},
+    "session": {"$name.yaml": texts.SESSION, "test_$name.py": texts.TEST_SESSION},
+}
+"""Files of each kind; a vehicle's profile, a world and a golden are made from what is there."""
+BEGUN: Final = "hatchback"
+_NAME: Final = re.compile(r"[a-z][a-z0-9_]{0,40}")
+
+
+def new(options: Namespace) -> Outcome:
+    """Write the files of a kind; none that is there is replaced.
+
+    Raises:
+        ProfileError: a name that is none, a file that is there already or cannot be written.
+    """
+    folder, name = Path(options.out), str(options.name)
+    if not _NAME.fullmatch(name):
+        raise ProfileError(f"command line: NAME: value {name}: lower-case letters, digits and _, up to 41")
+    files = {
+        Template(file).substitute(name=name): Template(text).safe_substitute(name=name)
+        for file, text in KINDS[options.kind].items()
+    }
+    if options.kind == "vehicle":
+        files[f"{name}.yaml"] = _vehicle(name)
+    made = [*files, *({"world": [f"{name}.yaml"], "scenario": [f"golden/{name}.csv"]}.get(options.kind, []))]
+    for file in made:
+        if (folder / file).exists():
+            raise ProfileError(f"{folder / file}: is there already")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for file, text in files.items():
+            (folder / file).write_text(text, "utf-8")
+    except OSError as error:
+        raise ProfileError(f"{folder}: cannot be written: {error.strerror}") from None
+    _complete(options.kind, folder, name)
+    paths = sorted(str(folder / file) for file in made)
+    return Outcome(0, {"files": paths}, "\n".join((*paths, f"pytest {folder / f'test_{name}.py'}")))
+
+
+def _vehicle(name: str) -> str:
+    """Return the shipped vehicle under a new head."""
+    lines = find("vehicles", BEGUN).read_text("utf-8").splitlines(keepends=True)
+    first = next(at for at, line in enumerate(lines) if not line.startswith("#"))
+    return Template(texts.VEHICLE_HEAD.format(begun=BEGUN)).substitute(name=name) + "".join(lines[first:])
+
+
+def _complete(kind: str, folder: Path, name: str) -> None:
+    """Make what is made from the files that were written: the world of a plan, the golden of a scenario."""
+    if kind == "world":
+        from simconsole.world.tools.generate import generate
+
+        generate(str(folder / f"{name}.plan.yaml"), str(folder / f"{name}.yaml"))
+    if kind == "scenario":
+        from simconsole.evaluation.checks.scenario_check import check_scenario
+
+        check_scenario(str(folder / f"{name}.yaml"), update_golden=True)

@@ -1,0 +1,1 @@
+"""Programs on the ROS side that speak only rosbridge: SLAM, and navigation."""

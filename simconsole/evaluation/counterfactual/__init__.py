@@ -1,0 +1,1 @@
+"""The same inputs, one thing changed."""
