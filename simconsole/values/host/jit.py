@@ -162,9 +162,18 @@ def _held(function: Callable[..., Any], held: tuple[Any, ...]) -> Callable[..., 
     kind = _numba().typeof(held)
     memory = np.zeros(lowering.size_of(kind), np.uint8)
     _keeper(kind)(memory.ctypes.data, held)
-    found = partial(_caller(function, kind), memory.ctypes.data)
-    found.arrays = memory, held  # type: ignore[attr-defined]  # as long as somebody may call it
+    found = _Holding(_caller(function, kind), memory.ctypes.data)
+    found.arrays = memory, held  # as long as somebody may call it
     return found
+
+
+class _Holding(partial[Any]):
+    """A call with an address, which means nothing in another process."""
+
+    arrays: tuple[Any, ...] = ()
+
+    def __reduce__(self) -> Any:
+        raise TypeError("compiled code that holds arrays cannot be handed to another process")
 
 
 @cache
