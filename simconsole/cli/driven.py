@@ -1,9 +1,11 @@
 """The end of `simconsole demo` and `simconsole drive`: packing, report and scene, the table, the exit code."""
 
+from collections import Counter
 from typing import Any
 
 from simconsole.cli.outcome import RECORDING_FAILED, Outcome, table
 from simconsole.cli.progress import Progress
+from simconsole.evaluation.metrics.rule_metrics import RULES
 from simconsole.evaluation.report.exports import REPORT, write_exports
 from simconsole.evaluation.report.scene_export import SCENE
 from simconsole.processes.lifetimes import INTERRUPTED
@@ -91,6 +93,18 @@ def _link(result: DriveResult) -> str:
     return f"{link_label(bridge.link)}, at {odometry_hz:g} Hz"
 
 
+def _road_rows(metrics: dict[str, Any]) -> list[tuple[str, str]]:
+    """Return what was met on a road map, and which rules were broken there."""
+    if metrics["road"] is None:
+        return []
+    met, broken = metrics["road"]["whole"], Counter(RULES[event["rule"]] for event in metrics["rules"])
+    return [
+        ("lights", f"{met['lights_passed']} passed, stood at {met['lights_stood_at']} of them"),
+        ("others", f"somebody had to be let pass {met['let_pass']} times"),
+        ("rules", ", ".join(f"{rule}: {count}" for rule, count in broken.items()) or "none broken, nobody touched"),
+    ]
+
+
 def _rows(result: DriveResult, metrics: dict[str, Any], link: str) -> list[tuple[str, str]]:
     interrupted = ", interrupted" if result.interrupted else ""
     rows = [
@@ -108,9 +122,12 @@ def _rows(result: DriveResult, metrics: dict[str, Any], link: str) -> list[tuple
         rows.append(("autopilot's link", link))
     manual = metrics["manual"]
     if manual and manual["lateral_deviation_m"] is not None:
-        spread, largest = manual["lateral_deviation_m"] * 100.0, manual["lateral_max_m"] * 100.0
-        shown = f"{manual['distance_m']:.1f} m, lateral position: SD {spread:.1f} cm, max {largest:.1f} cm"
+        rms, spread, largest = (100.0 * manual[f"lateral_{key}_m"] for key in ("rms", "deviation", "max"))
+        shown = (
+            f"{manual['distance_m']:.1f} m, lateral error RMS {rms:.1f} cm, max {largest:.1f} cm, SD {spread:.1f} cm"
+        )
         rows.append(("by the person", shown))
+    rows += _road_rows(metrics)
     wheel = metrics["force_feedback"]
     if wheel and wheel["eased_from_s"] is not None:
         least = f"{100.0 * wheel['least_share']:.0f} % of the car's torque at {wheel['least_at_kmh']:.0f} km/h"

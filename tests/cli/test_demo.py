@@ -129,6 +129,7 @@ def test_the_person_keeps_to_the_path_too(demo: Demo) -> None:
     part = demo.results["manual"]
     assert part["distance_m"] >= 850.0
     assert 0.05 < part["lateral_deviation_m"] < 0.35
+    assert part["lateral_rms_m"] < 0.4
 
 
 def test_both_obey_and_touch_nobody(demo: Demo, table: LogTable) -> None:
@@ -142,6 +143,9 @@ def test_both_obey_and_touch_nobody(demo: Demo, table: LogTable) -> None:
     owed = table.column("situation.yield_m") < FAR
     assert (owed & autonomous).any(), "the autopilot let somebody pass"
     assert (owed & ~autonomous).any(), "so did the person"
+    road = demo.results["road"]
+    assert road["whole"]["lights_passed"] >= 1
+    assert min(road[side]["let_pass"] for side in ("autonomous", "manual")) >= 1
 
 
 def test_the_drive_never_waited_in_vain_and_computed_less_than_it_lasts(

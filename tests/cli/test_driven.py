@@ -18,7 +18,9 @@ METRICS = {
     "distance_m": 100.0,
     "duration_s": 12.0,
     "autonomous": PART,
-    "manual": {"distance_m": 10.0, "lateral_deviation_m": 0.0234, "lateral_max_m": 0.1},
+    "manual": {"distance_m": 10.0, "lateral_rms_m": 0.03, "lateral_deviation_m": 0.0234, "lateral_max_m": 0.1},
+    "rules": [],
+    "road": {"whole": {"lights_passed": 5, "lights_stood_at": 3, "let_pass": 2}},
     "force_feedback": {"least_share": 0.82, "least_at_kmh": 131.0, "eased_s": 4.5, "eased_from_s": 2.0},
     "mode_changes": [{"t_s": 1.5, "mode": "MANUAL", "reason": "controls ready"}],
 }
@@ -44,6 +46,14 @@ def wanted(monkeypatch: pytest.MonkeyPatch) -> list[tuple[bool, bool]]:
     return calls
 
 
+def test_broken_rules_are_counted(wanted: list[tuple[bool, bool]], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(METRICS, "rules", [{"rule": "red_light"}, {"rule": "speeding"}, {"rule": "red_light"}])
+    assert "red light passed: 2, speed limit exceeded: 1" in finish(result(), scene=False).text
+    monkeypatch.setitem(METRICS, "road", None)
+    assert "red light" not in finish(result(), scene=False).text
+    assert len(wanted) == 2
+
+
 def test_a_good_drive_is_told_in_a_table(wanted: list[tuple[bool, bool]]) -> None:
     outcome = finish(result(), scene=False)
     assert outcome.code == 0
@@ -51,7 +61,10 @@ def test_a_good_drive_is_told_in_a_table(wanted: list[tuple[bool, bool]]) -> Non
     lines = [line.split(maxsplit=1) for line in outcome.text.splitlines()]
     assert ["distance", "100.0 m"] in lines
     assert "RMS 1.23 cm, max 20.00 cm" in outcome.text
-    assert "10.0 m, lateral position: SD 2.3 cm, max 10.0 cm" in outcome.text
+    assert "10.0 m, lateral error RMS 3.0 cm, max 10.0 cm, SD 2.3 cm" in outcome.text
+    assert ["lights", "5 passed, stood at 3 of them"] in lines
+    assert ["others", "somebody had to be let pass 2 times"] in lines
+    assert ["rules", "none broken, nobody touched"] in lines
     assert "mode at    1.50 s" in outcome.text
     assert "eased to 82 % of the car's torque at 131 km/h, 4.5 s in all" in outcome.text
     assert "out/it/report.html" in outcome.text

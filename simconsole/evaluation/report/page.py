@@ -38,6 +38,11 @@ _TAKEOVER: Final = (
     ("peak_deviation_m", "largest deviation, m"),
     ("peak_lateral_jerk_mps3", "largest lateral jerk, m/s3"),
 )
+_ROAD: Final = (
+    ("lights_passed", "Lights passed"),
+    ("lights_stood_at", "Stood at, of these"),
+    ("let_pass", "Somebody had to be let pass"),
+)
 METRICS: Final[tuple[tuple[str, str, str], ...]] = (
     ("duration_s", "Duration", "{:.1f} s"),
     ("distance_m", "Distance", "{:.1f} m"),
@@ -112,6 +117,7 @@ def page(
         "<h2>Mode changes</h2>",
         _changes_table(found),
         *(("<h2>Take-overs</h2>", _takeovers_table(found)) if found["takeovers"] else ()),
+        *(("<h2>On the road</h2>", _road_table(found)) if found["road"] else ()),
         *(("<h2>Rules of the road</h2>", _rules_table(found)) if found["rules"] else ()),
         *(("<h2>Faults</h2>", _faults_table(found)) if found["faults"] else ()),
         *(("<h2>Force feedback</h2>", _wheel_table(found["force_feedback"])) if found["force_feedback"] else ()),
@@ -178,6 +184,17 @@ def _changes_table(found: Mapping[str, Any]) -> str:
             f"<td class=n>{change['distance_m']:.1f} m</td><td>{escape(mode)}</td>"
             f"<td>{escape(change['reason'])}</td></tr>"
         )
+    return "\n".join((*lines, "</table>"))
+
+
+def _road_table(found: Mapping[str, Any]) -> str:
+    """Return what was met, and how many rules were broken in all: none is worth saying, too."""
+    road = found["road"]
+    lines = ["<table><tr><th></th><th class=n>whole drive</th><th class=n>autopilot</th><th class=n>person</th></tr>"]
+    for key, label in _ROAD:
+        cells = "".join(f"<td class=n>{road[side][key]}</td>" for side in ("whole", "autonomous", "manual"))
+        lines.append(f"<tr><th>{label}</th>{cells}</tr>")
+    lines.append(f"<tr><th>Rules broken</th><td class=n>{len(found['rules'])}</td><td></td><td></td></tr>")
     return "\n".join((*lines, "</table>"))
 
 
