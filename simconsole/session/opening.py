@@ -35,7 +35,7 @@ from simconsole.session.paced import (
     worker_specs,
 )
 from simconsole.session.pacing import Pacer, UnpacedPacer, realtime_hints
-from simconsole.session.preconditions import check_address, check_commander, check_links
+from simconsole.session.preconditions import check_address, check_commander, check_links, check_world
 from simconsole.session.recorder import LogRecorder
 from simconsole.session.seat import open_seating
 from simconsole.session.traffic_source import TrafficSource, open_traffic
@@ -92,12 +92,13 @@ def open_headless(
     A controller of `own` drives in the place of whoever the session names, as in lockstep.
 
     Raises:
-        ProfileError: the session needs lockstep for what it asks.
+        ProfileError: the session needs lockstep for what it asks, or another world for its vehicle.
         RecordingError: the bag with its commands cannot be used.
         BridgeError: the bridge cannot listen, or the autopilot did not connect.
         CanError: the CAN bus cannot be opened.
         DeviceError: a device is missing.
     """
+    check_world(resolved)
     check_commander(resolved.session)
     check_links(resolved.session)
     commands: CommandSource = NobodyCommands()
@@ -174,9 +175,10 @@ def open_realtime(
         WorkerError: shared memory or the workers cannot be created.
         BridgeError: the bridge worker does not listen.
         CanError: the CAN worker does not open its bus.
-        ProfileError: the session's commander has no link to the console.
+        ProfileError: the session's commander has no link to the console, or its vehicle fits not its world.
         DeviceError: a device is missing.
     """
+    check_world(resolved)
     check_commander(resolved.session)
     if resolved.session.outputs.bridge is not None:
         check_address(resolved.session.outputs.bridge)

@@ -1,8 +1,25 @@
-"""What a session must have before a drive is opened: commanders and links that fit its pacing, a port that is free."""
+"""What a session must have to open: a commander and links for its pacing, a world for its vehicle, a free port."""
 
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.session import SessionProfile
+from simconsole.profiles.vehicle import TurtlebotProfile
+from simconsole.profiles.world import ArenaProfile
+from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import ProfileError
+
+
+def check_world(resolved: ResolvedSession) -> None:
+    """Refuse a world whose walls the vehicle would drive through.
+
+    Raises:
+        ProfileError: the vehicle is no robot, and the world an arena.
+    """
+    if isinstance(resolved.world, ArenaProfile) and not isinstance(resolved.vehicle, TurtlebotProfile):
+        session = resolved.session
+        raise ProfileError(
+            f"environment.world: value {session.environment.world}: a course or a road map, where scenario.vehicle is"
+            f" {session.scenario.vehicle}: an arena's walls stop robots only"
+        )
 
 
 def check_commander(session: SessionProfile) -> None:

@@ -6,8 +6,8 @@ import pytest
 from simconsole.bridge.transport import sockets
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.session import SessionProfile
-from simconsole.session.preconditions import check_address, check_commander
-from simconsole.session.resolution import load_session, override
+from simconsole.session.preconditions import check_address, check_commander, check_world
+from simconsole.session.resolution import load_session, override, resolve
 from simconsole.values.errors import ProfileError
 
 
@@ -20,6 +20,19 @@ def test_shipped_session_can_be_driven(session: SessionProfile) -> None:
     assert session.features.commander == "can"
     check_commander(session)  # it raises where the commander has no way in
     check_commander(load_session("demo"))
+
+
+@pytest.mark.parametrize("vehicle", ["hatchback", "ball"])
+def test_only_robots_are_let_into_an_arena(vehicle: str) -> None:
+    robot = load_session("turtlebot3_burger")
+    check_world(resolve(robot))
+    other = override(robot, scenario={"vehicle": vehicle, "start": None})
+    told = (
+        rf"environment\.world: value arena: .* where scenario\.vehicle is {vehicle}: an arena's walls stop robots only"
+    )
+    with pytest.raises(ProfileError, match=told):
+        check_world(resolve(other))
+    check_world(resolve(override(other, environment={"world": "urban"})))
 
 
 @pytest.mark.parametrize(
