@@ -24,6 +24,7 @@ from simconsole.recording.log_header import ACTS, PLANS, ROAD_USERS, LogHeader, 
 from simconsole.recording.own_signals import stream_of
 from simconsole.session.opening import Opened, open_headless, open_realtime
 from simconsole.session.paced import keeps_plans
+from simconsole.session.preconditions import check_session, check_world
 from simconsole.session.provenance import package_versions, provenance_at_start, with_devices
 from simconsole.session.seat import look_for_devices
 from simconsole.tick.advance import SETTINGS, Console, ConsoleState, advance
@@ -79,6 +80,8 @@ def drive(
         SimConsoleError: a device, port or file cannot be opened; what was opened before is closed again.
     """
     sweep()
+    check_session(resolved.session, has_controller=own.controller is not None)
+    check_world(resolved)
     look_for_devices(resolved)
     console, state = assemble(resolved, compiled)
     warm_up(console, state)

@@ -35,7 +35,7 @@ from simconsole.session.paced import (
     worker_specs,
 )
 from simconsole.session.pacing import Pacer, UnpacedPacer, realtime_hints
-from simconsole.session.preconditions import check_address, check_commander, check_links, check_world
+from simconsole.session.preconditions import check_address
 from simconsole.session.recorder import LogRecorder
 from simconsole.session.seat import open_seating
 from simconsole.session.traffic_source import TrafficSource, open_traffic
@@ -92,15 +92,12 @@ def open_headless(
     A controller of `own` drives in the place of whoever the session names, as in lockstep.
 
     Raises:
-        ProfileError: the session needs lockstep for what it asks, or another world for its vehicle.
+        ProfileError: lockstep without a bridge.
         RecordingError: the bag with its commands cannot be used.
         BridgeError: the bridge cannot listen, or the autopilot did not connect.
         CanError: the CAN bus cannot be opened.
         DeviceError: a device is missing.
     """
-    check_world(resolved)
-    check_commander(resolved.session)
-    check_links(resolved.session)
     commands: CommandSource = NobodyCommands()
     outputs: tuple[Output, ...] = ()
     pace = UnpacedPacer()
@@ -120,8 +117,6 @@ def open_headless(
     elif resolved.session.features.commands is not None:
         bag = _open_bag(resolved.session, console, stack)
         commands, outputs, counters = bag, (bag,), bag.summary
-    elif resolved.session.features.autopilot is not None:
-        raise ProfileError("mode.pacing: value free: lockstep or realtime, where features.autopilot drives")
     can = _open_can(resolved, console, bundle, stack)
     if can is not None:
         outputs, of_can = (*outputs, can), can.summary
@@ -175,11 +170,9 @@ def open_realtime(
         WorkerError: shared memory or the workers cannot be created.
         BridgeError: the bridge worker does not listen.
         CanError: the CAN worker does not open its bus.
-        ProfileError: the session's commander has no link to the console, or its vehicle fits not its world.
+        ProfileError: the bridge's own message types cannot be used.
         DeviceError: a device is missing.
     """
-    check_world(resolved)
-    check_commander(resolved.session)
     if resolved.session.outputs.bridge is not None:
         check_address(resolved.session.outputs.bridge)
     token, drive = own_token(resolved.session), new_nonce()

@@ -1,11 +1,15 @@
 """What a session must have to open: a commander and links for its pacing, a world for its vehicle, a free port."""
 
+from typing import Final
+
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.session import SessionProfile
 from simconsole.profiles.vehicle import TurtlebotProfile
 from simconsole.profiles.world import ArenaProfile
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import ProfileError
+
+FREE: Final = "mode.pacing: value free (with --headless realtime becomes free)"
 
 
 def check_world(resolved: ResolvedSession) -> None:
@@ -22,12 +26,26 @@ def check_world(resolved: ResolvedSession) -> None:
         )
 
 
-def check_commander(session: SessionProfile) -> None:
-    """Refuse a session whose `features.commander` could never command.
+def check_session(session: SessionProfile, *, has_controller: bool = False) -> None:
+    """Refuse what could never be driven or would be left out in silence, before anything is compiled or opened.
+
+    Args:
+        session: what is to be driven.
+        has_controller: code of the lab's own commands, in the place of whoever the session names.
 
     Raises:
-        ProfileError: it could not.
+        ProfileError: its commander has no way in, or what it asks needs another pacing.
     """
+    _check_commander(session)
+    if session.mode.pacing == "realtime":
+        return
+    if session.mode.pacing == "free" and session.features.autopilot is not None and not has_controller:
+        raise ProfileError(f"{FREE}: lockstep or realtime, where features.autopilot drives")
+    if session.outputs.bridge is not None:
+        _check_links(session.outputs.bridge, session.mode.pacing)
+
+
+def _check_commander(session: SessionProfile) -> None:
     features = session.features
     if features.commands is not None and (session.mode.pacing != "free" or features.autopilot is not None):
         raise ProfileError(f"features.commands: value {features.commands}: mode.pacing free, and no autopilot")
@@ -39,24 +57,15 @@ def check_commander(session: SessionProfile) -> None:
         raise ProfileError("mode.pacing: value lockstep: realtime or free, where features.commander is can")
 
 
-def check_links(session: SessionProfile) -> None:
-    """Refuse what a headless drive would leave out in silence.
-
-    Raises:
-        ProfileError: it needs another pacing.
-    """
-    bridge = session.outputs.bridge
-    if bridge is None:
-        return
+def _check_links(bridge: BridgeProfile, pacing: str) -> None:
     if bridge.camera is not None:
-        pacing = session.mode.pacing
         raise ProfileError(f"mode.pacing: value {pacing}: realtime, where outputs.bridge.camera is to be drawn")
-    if session.mode.pacing == "lockstep":
+    if pacing == "lockstep":
         return
     if bridge.upstream is not None:
-        raise ProfileError("mode.pacing: value free: realtime, where outputs.bridge.upstream is to be connected to")
+        raise ProfileError(f"{FREE}: realtime, where outputs.bridge.upstream is to be connected to")
     if bridge.ros2 is not None:
-        raise ProfileError("mode.pacing: value free: lockstep or realtime, where outputs.bridge.ros2 joins a graph")
+        raise ProfileError(f"{FREE}: lockstep or realtime, where outputs.bridge.ros2 joins a graph")
 
 
 def check_address(profile: BridgeProfile) -> None:

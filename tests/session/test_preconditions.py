@@ -6,7 +6,7 @@ import pytest
 from simconsole.bridge.transport import sockets
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.session import SessionProfile
-from simconsole.session.preconditions import check_address, check_commander, check_world
+from simconsole.session.preconditions import check_address, check_session, check_world
 from simconsole.session.resolution import load_session, override, resolve
 from simconsole.values.errors import ProfileError
 
@@ -18,8 +18,8 @@ def session() -> SessionProfile:
 
 def test_shipped_session_can_be_driven(session: SessionProfile) -> None:
     assert session.features.commander == "can"
-    check_commander(session)  # it raises where the commander has no way in
-    check_commander(load_session("demo"))
+    check_session(session)  # it raises where the commander has no way in
+    check_session(load_session("demo"))
 
 
 @pytest.mark.parametrize("vehicle", ["hatchback", "ball"])
@@ -27,9 +27,7 @@ def test_only_robots_are_let_into_an_arena(vehicle: str) -> None:
     robot = load_session("turtlebot3_burger")
     check_world(resolve(robot))
     other = override(robot, scenario={"vehicle": vehicle, "start": None})
-    told = (
-        rf"environment\.world: value arena: .* where scenario\.vehicle is {vehicle}: an arena's walls stop robots only"
-    )
+    told = rf"environment\.world: value arena: .* where scenario\.vehicle is {vehicle}: an arena's walls"
     with pytest.raises(ProfileError, match=told):
         check_world(resolve(other))
     check_world(resolve(override(other, environment={"world": "urban"})))
@@ -46,7 +44,7 @@ def test_commander_with_no_way_in_is_refused(
     session: SessionProfile, changes: dict[str, dict[str, object]], words: str
 ) -> None:
     with pytest.raises(ProfileError, match=words):
-        check_commander(override(session, **changes))
+        check_session(override(session, **changes))
 
 
 @pytest.mark.parametrize(
@@ -59,9 +57,16 @@ def test_commander_with_no_way_in_is_refused(
 )
 def test_a_bag_commands_only_where_no_other_controller_is_waited_for(changes: dict[str, dict[str, object]]) -> None:
     session = override(load_session("seated"), features={"commands": "bag:drive.mcap"})
-    check_commander(override(session, mode={"pacing": "free"}))
+    check_session(override(session, mode={"pacing": "free"}))
     with pytest.raises(ProfileError, match=r"features\.commands: value bag:drive\.mcap: mode\.pacing free"):
-        check_commander(override(session, **changes))
+        check_session(override(session, **changes))
+
+
+def test_an_autopilot_needs_a_pace_unless_own_code_commands() -> None:
+    session = override(load_session("demo"), mode={"pacing": "free"})
+    with pytest.raises(ProfileError, match=r"free \(with --headless realtime becomes free\): lockstep or realtime"):
+        check_session(session)
+    check_session(session, has_controller=True)
 
 
 def test_a_client_that_comes_while_the_port_is_checked_is_not_let_in(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,106 @@
+"""The commands that drive, and those beside a drive."""
+
+from typing import Any, Final
+
+from simconsole.cli.arguments.command import command, number
+from simconsole.drivers.path_tracker.tracker_settings import GATE, TRACKERS
+from simconsole.processes.lifetimes import ATTACHED
+
+_MAX_DELAY_MS: Final = 6000.0
+"""The longest delay that a session's link may have each way, and its jitter on average."""
+
+
+def driving(commands: Any) -> None:
+    """Add demo, drive and check."""
+    demo = command(commands, "demo", "demo:demo", "the whole way once, with no hardware: person, autopilot, report")
+    demo.add_argument("--perfect", action="store_true", help="exact odometry and no delay on the autopilot's link")
+    demo.add_argument("--realtime", action="store_true", help="pace it, with every worker in its own process")
+    demo.add_argument("--out", metavar="DIR", help="where the bundle goes (default: out/demo-TIME)")
+
+    drive = command(commands, "drive", "drive:drive", "drive a session")
+    drive.add_argument(
+        "session", nargs="?", default="seated", metavar="SESSION", help="by name, or a .yaml file (default: seated)"
+    )
+    drive.add_argument("--headless", action="store_true", help="no window, as fast as it goes")
+    drive.add_argument("--choose", action="store_true", help="ask what to drive with, and where")
+    drive.add_argument("--driver", metavar="D", help="sdl | virtual | trace:F | script:F | keyboard | none")
+    drive.add_argument("--person", type=int, metavar="SEED", help="with the driver virtual: which simulated person")
+    drive.add_argument("--commands", metavar="C", help="bag:FILE[:TOPIC]: recorded commands in place of a controller's")
+    drive.add_argument("--cockpit", metavar="PROFILE", help="a cockpit by name, or the file that `calibrate` wrote")
+    drive.add_argument("--language", metavar="L", help="of the display: english, german, or a .yaml file")
+    drive.add_argument("--for", dest="duration_s", type=float, metavar="S", help="end after S simulated seconds")
+    drive.add_argument("--out", metavar="DIR", help="where the bundle goes (default: out/drive-TIME)")
+    drive.add_argument("--participant", default="", metavar="ID", help="who drives; kept in the bundle from the start")
+    drive.add_argument("--trial", default="", metavar="ID", help="which of their drives")
+    drive.add_argument("--note", action="append", default=[], metavar="TEXT", help="may be given several times")
+    for one in (demo, drive):
+        one.add_argument("--no-pack", action="store_true", help="leave the log as it was written")
+
+    check = command(commands, "check", "check:check", "drive scripted scenarios headless against their goldens")
+    check.add_argument("scenarios", nargs="+", metavar="SCENARIO", help="by name, or a .yaml file")
+    check.add_argument("--jobs", type=int, default=1, metavar="N", help="drive N at a time")
+    check.add_argument("--report", metavar="FILE", help="write values and plots of the test manoeuvres as HTML")
+    check.add_argument("--junit", metavar="FILE", help="write a JUnit report")
+    check.add_argument("--review", metavar="FILE", help="write accepted and driven over each other, where they differ")
+    check.add_argument("--update-golden", action="store_true", help="accept what was driven as the new golden")
+
+
+def beside_a_drive(commands: Any) -> None:
+    """Add operate and autopilot."""
+    operate = command(commands, "operate", "operate:operate", "an operator's act in a running drive")
+    acts = (
+        "start",
+        "pause",
+        "restart",
+        "autonomous",
+        "manual",
+        "shared",
+        "takeover",
+        "fault",
+        "mark",
+        "reset",
+        "estop",
+        "anti_lock",
+        "traction",
+        "stability",
+    )
+    operate.add_argument("act", choices=acts, metavar="ACT", help=", ".join(acts))
+    operate.add_argument("--note", default="", metavar="TEXT", help="kept with the drive")
+    operate.add_argument("--participant", default="", metavar="ID")
+    operate.add_argument("--trial", default="", metavar="ID")
+    operate.add_argument(
+        "--url",
+        default="ws://127.0.0.1:9090",
+        metavar="URL",
+        help="the console's rosbridge server (a token of role control, if it asks for one: SIMCONSOLE_TOKEN)",
+    )
+    operate.add_argument("--namespace", default="", metavar="NS", help="of the console's topics")
+
+    autopilot = command(commands, "autopilot", "remote:autopilot", "the path tracker, as a ROS-side program")
+    autopilot.add_argument("--url", default="ws://127.0.0.1:9090", metavar="URL")
+    autopilot.add_argument("--course", default="urban", metavar="WORLD")
+    autopilot.add_argument("--vehicle", default="hatchback", metavar="VEHICLE", help="the car that it drives")
+    autopilot.add_argument(
+        "--delay-ms", type=number(0.0, _MAX_DELAY_MS, "ms"), default=10.0, metavar="MS", help="from state to effect"
+    )
+    autopilot.add_argument("--tracker", choices=TRACKERS, default=TRACKERS[0], help="how it steers")
+    autopilot.add_argument(
+        "--lateral-accel",
+        type=number(0.1, 20.0, "m/s2"),
+        default=GATE.lateral_mps2,
+        metavar="MPS2",
+        help="that the console's gate lets pass",
+    )
+    autopilot.add_argument(
+        "--lateral-jerk",
+        type=number(0.0, 100.0, "m/s3"),
+        default=GATE.lateral_jerk_mps3,
+        metavar="MPS3",
+        help="the same; 0: any",
+    )
+    autopilot.add_argument("--plan-hz", type=number(0.0, 20.0, "Hz"), default=0.0, help="how often it tells its plan")
+    autopilot.add_argument("--wait", type=float, default=10.0, metavar="S", help="how long to wait for the server")
+    autopilot.add_argument("--namespace", default="", metavar="NS", help="of the console's topics")
+    autopilot.add_argument("--rename", action="append", default=[], metavar="/TOPIC=/NAME", help="what one is called")
+    autopilot.add_argument("--certificate", metavar="PEM", help="of a wss:// server; a token: SIMCONSOLE_TOKEN")
+    autopilot.add_argument(ATTACHED, action="store_true", help="end with whoever holds standard input")
