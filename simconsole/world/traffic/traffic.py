@@ -97,9 +97,15 @@ class Traffic:
 
     def _hold(self, execution: Execution) -> None:
         """Hand the arrays, which stay where they are, to the kernels."""
-        near = np.zeros(len(self._boxes), np.int64)
         everybody = Everybody(
-            self._net, self._values, self._paths, self._boxes, self._turn, near, self._ids, self._users
+            net=self._net,
+            values=self._values,
+            paths=self._paths,
+            boxes=self._boxes,
+            turn=self._turn,
+            near=np.zeros(len(self._boxes), np.int64),
+            ids=self._ids,
+            users=self._users,
         )
         self._step_all: Callable[[int, float], Stepped] = holding(execution(step_and_list), everybody)
         self._list_all: Callable[[], int] = holding(execution(list_all), everybody)
