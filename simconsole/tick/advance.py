@@ -33,7 +33,7 @@ from simconsole.values.signals import (
 from simconsole.values.state_vector import INPUT_WIDTH, LAYOUT, PLATFORM_AT, Snapshot, TickInputs, columns
 from simconsole.world.obstacles.sides import FixedThings
 from simconsole.world.obstacles.striking import strike
-from simconsole.world.rules.road_rules import NO_ROADS, RoadRules
+from simconsole.world.rules.road_rules import RoadRules
 from simconsole.world.rules.situation import look_around
 
 Execution = Callable[[Callable[..., Any]], Callable[..., Any]]
@@ -76,9 +76,9 @@ class Console(NamedTuple):
     strike: Callable[[Row, Row, FixedThings], None] | None  # None: the world has no fixed things
     step: Step
     force_feedback: Callable[[Row, Row, Row, float], None] | None  # None: the wheel has no motor
-    roads: RoadRules  # NO_ROADS: the world has no rules
+    roads: RoadRules | None  # None: the world has no rules
     look_around: Callable[[Row, Row, RoadRules, float], None] | None  # None: likewise
-    block: Callable[[Row, Row, Row, Row, Row, Row, Row, RoadRules, float, int], None]  # see `advance_block`
+    block: Callable[[Row, Row, Row, Row, Row, Row, Row, RoadRules | None, float, int], None]  # see `advance_block`
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -126,7 +126,7 @@ def build_console(
         strike=None if struck is None else execution(struck),
         step=execution(platform.step),
         force_feedback=None if feel is None else execution(feel),
-        roads=NO_ROADS if roads is None else roads,
+        roads=roads,
         look_around=None if look is None else execution(look),
         block=execution(_block_of(in_order(decide, struck, platform.step, look, feel, None))),
     )
@@ -180,7 +180,7 @@ def advance_block(previous: Row, rows: Row, console: Console) -> None:
     console.block(previous, rows, *_constants(console))
 
 
-def _constants(console: Console) -> tuple[Row, Row, Row, Row, Row, RoadRules, float, int]:
+def _constants(console: Console) -> tuple[Row, Row, Row, Row, Row, RoadRules | None, float, int]:
     """Return what a tick takes beside the state vectors."""
     on, start = console.platform, (console.initial, console.restarted)
     return console.settings, on.parameters, on.ground, *start, console.roads, console.tick_s, console.substeps
@@ -197,7 +197,8 @@ def in_order(
     """Return one tick: its stages in their order. Nowhere else do they stand.
 
     One text, two executions: of compiled stages, called one by one, with a `mark` that hears the end of each; and of
-    the kernels themselves, without a mark, compiled as a whole (`advance_block`).
+    the kernels themselves, without a mark, compiled as a whole (`advance_block`). Only `strike` and `look_around` read
+    `roads`: without them it is None, for each of its tables would have to be handed over in every call.
     """
 
     @kernel
