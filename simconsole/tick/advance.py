@@ -312,6 +312,7 @@ def decide(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
         explained_rad=motor.explained_rad,
         explained_radps=motor.explained_radps,
         human_nm=read(previous, LAYOUT.torque).human_nm,
+        hand_wheel_radps2=(driver.hand_wheel_radps - read(previous, LAYOUT.driver).hand_wheel_radps) / tick_s,
         carried_nm=motor.carried_nm,
         wheel_motor=motor.live,
         settings=control,
