@@ -68,11 +68,12 @@ class TrafficSource:
         """Step, if a period has ended with this tick."""
         if snapshot.tick % self._period_ticks:
             return
-        ego = ego_box(snapshot.vehicle, self._platform)
+        vehicle = snapshot.vehicle
+        ego = ego_box(vehicle, self._platform)
         self._newest = RoadUsersAt(snapshot.tick, self._traffic.step(ego))
         self._fresh = True
         self._ahead = self._look(ego, snapshot.tick)
-        self._crash = self._crashes.step(snapshot.vehicle, ego, self._newest.users)
+        self._crash = self._crashes.step(vehicle, ego, self._newest.users)
         self.collisions += len(self._crash.new)
         for number, change_mps in self._crash.pushed:
             self._traffic.push(number, change_mps)

@@ -17,7 +17,7 @@ from simconsole.devices.calibration.calibrator import calibrate
 from simconsole.devices.calibration.cockpit_settings import CockpitSettings
 from simconsole.devices.force_feedback.force_settings import NO_FORCE, ForceSettings
 from simconsole.devices.force_feedback.torque import wheel_torque
-from simconsole.values.kernels import Row, kernel, put, stage
+from simconsole.values.kernels import Row, holding, kernel, put, stage
 from simconsole.values.latency import Hop, Mark, unheard
 from simconsole.values.layout import Part, lay_out, read, write
 from simconsole.values.platform import Platform, Step
@@ -78,7 +78,7 @@ class Console(NamedTuple):
     force_feedback: Callable[[Row, Row, Row, float], None] | None  # None: the wheel has no motor
     roads: RoadRules | None  # None: the world has no rules
     look_around: Callable[[Row, Row, RoadRules, float], None] | None  # None: likewise
-    block: Callable[[Row, Row, Row, Row, Row, Row, Row, RoadRules | None, float, int], None]  # see `advance_block`
+    block: Callable[[Row, Row, Row, Row, Row, Row, Row, float, int], None]  # see `advance_block`; it holds the roads
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -128,7 +128,7 @@ def build_console(
         force_feedback=None if feel is None else execution(feel),
         roads=roads,
         look_around=None if look is None else execution(look),
-        block=execution(_block_of(in_order(decide, struck, platform.step, look, feel, None))),
+        block=holding(execution(_block_of(in_order(decide, struck, platform.step, look, feel, None))), roads),
     )
 
 
@@ -165,7 +165,7 @@ def advance_vector(previous: Row, inputs: Row | tuple[float, ...], console: Cons
     row[:INPUT_WIDTH] = inputs
     stages = console.decide, console.strike, console.step, console.look_around, console.force_feedback
     tick = in_order(*stages, mark)
-    tick(previous, row, *_constants(console))
+    tick(console.roads, previous, row, *_constants(console))
     return row
 
 
@@ -180,10 +180,10 @@ def advance_block(previous: Row, rows: Row, console: Console) -> None:
     console.block(previous, rows, *_constants(console))
 
 
-def _constants(console: Console) -> tuple[Row, Row, Row, Row, Row, RoadRules | None, float, int]:
-    """Return what a tick takes beside the state vectors."""
+def _constants(console: Console) -> tuple[Row, Row, Row, Row, Row, float, int]:
+    """Return what a tick takes beside the state vectors and the roads."""
     on, start = console.platform, (console.initial, console.restarted)
-    return console.settings, on.parameters, on.ground, *start, console.roads, console.tick_s, console.substeps
+    return console.settings, on.parameters, on.ground, *start, console.tick_s, console.substeps
 
 
 def in_order(
@@ -203,6 +203,7 @@ def in_order(
 
     @kernel
     def tick(
+        roads: RoadRules,
         previous: Row,
         row: Row,
         settings: Row,
@@ -210,7 +211,6 @@ def in_order(
         ground: Row,
         initial: Row,
         restarted: Row,
-        roads: RoadRules,
         tick_s: float,
         substeps: int,
     ) -> None:
@@ -250,6 +250,7 @@ def _block_of(tick: Stage) -> Stage:
 
     @kernel
     def block(
+        roads: RoadRules,
         previous: Row,
         rows: Row,
         settings: Row,
@@ -257,13 +258,12 @@ def _block_of(tick: Stage) -> Stage:
         ground: Row,
         initial: Row,
         restarted: Row,
-        roads: RoadRules,
         tick_s: float,
         substeps: int,
     ) -> None:
         for index in range(len(rows)):
             row = rows[index]
-            tick(previous, row, settings, parameters, ground, initial, restarted, roads, tick_s, substeps)
+            tick(roads, previous, row, settings, parameters, ground, initial, restarted, tick_s, substeps)
             previous = row
 
     return block

@@ -6,6 +6,7 @@ here; `simconsole.values.host.jit` makes the compiled twin, so importing a core 
 """
 
 from collections.abc import Callable, Iterable
+from functools import partial
 from typing import Any, TypeVar
 
 from numpy.typing import NDArray
@@ -40,6 +41,20 @@ def is_kernel(value: object) -> bool:
 def is_stage(value: object) -> bool:
     """Return whether `value` was marked by `stage`."""
     return bool(getattr(value, "__stage__", False))
+
+
+def holding(call: Callable[..., Any], held: tuple[Any, ...] | None) -> Callable[..., Any]:
+    """Return `call`, a kernel or its compiled twin, with its first argument handed over for good.
+
+    Each array that Python hands to compiled code takes its time at every call, whatever is done with it: those that
+    stay the same from call to call are taken apart once.
+
+    Args:
+        call: what an execution makes of a kernel.
+        held: a `typing.NamedTuple` of arrays, numbers, and such tuples, or None; its arrays must stay where they are.
+    """
+    hold: Callable[..., Callable[..., Any]] | None = getattr(call, "hold", None)
+    return partial(call, held) if hold is None else hold(held)
 
 
 def forget() -> None:

@@ -15,7 +15,7 @@ import types
 from collections import namedtuple
 from collections.abc import Callable, Iterator
 from enum import EnumType, Flag
-from functools import cache
+from functools import cache, partial
 from importlib import import_module
 from pathlib import Path
 from typing import Any, Final, TypeVar
@@ -139,9 +139,7 @@ def compiled_for_each(step: Callable[..., Any]) -> Callable[..., None]:
     Returns: a function of (rows before, rows after, parameters, grounds, which of them each vehicle is on, an int), the
         tables float64 [vehicles or grounds, columns].
     """
-    namespace = {"__name__": __name__, "step": _for_numba(step), "prange": _numba().prange}
-    twin = types.FunctionType(_for_each.__code__, namespace, "for_each")
-    twin.__module__ = __name__  # numba asks for it when it loads compiled code from the cache
+    twin = _closed(_for_each, step=_for_numba(step), prange=_numba().prange)
     return _cached(twin, digest(step) + "-each", parallel=True, _nrt=True)  # type: ignore[no-any-return]
 
 
@@ -154,7 +152,60 @@ def _for_each(before: Any, after: Any, parameters: Any, grounds: Any, on: Any, c
 @cache
 def _entry(function: Callable[..., Any]) -> Any:
     """Return the dispatcher that Python calls, and kernels call of a stage. The other kernels are in its code."""
-    return _cached(_twin(function), digest(function))
+    dispatcher = _cached(_twin(function), digest(function))
+    dispatcher.hold = partial(_held, function)
+    return dispatcher
+
+
+def _held(function: Callable[..., Any], held: tuple[Any, ...] | None) -> Callable[..., Any]:
+    """Return the compiled twin with its first argument in memory, where compiled code finds it by its address."""
+    kind = _numba().typeof(held)
+    memory = np.zeros(lowering.size_of(kind), np.uint8)
+    _keeper(kind)(memory.ctypes.data, held)
+    found = _Holding(_caller(function, kind), memory.ctypes.data)
+    found.arrays = memory, held  # as long as somebody may call it
+    return found
+
+
+class _Holding(partial[Any]):
+    """A call with an address, which means nothing in another process."""
+
+    arrays: tuple[Any, ...] = ()
+
+    def __reduce__(self) -> Any:
+        raise TypeError("compiled code that holds arrays cannot be handed to another process")
+
+
+@cache
+def _keeper(kind: Any) -> Any:
+    """Return the dispatcher that writes values of a numba type at an address."""
+    return _cached(_closed(_keep, keep=lowering.memory_of(kind)[0]), f"{_kind_stamp(kind)}-keep")
+
+
+def _keep(address: int, held: Any) -> None:
+    keep(address, held)  # type: ignore[name-defined]  # noqa: F821  # by _closed, like those of _with_kept
+
+
+@cache
+def _caller(function: Callable[..., Any], kind: Any) -> Any:
+    """Return the dispatcher of a kernel whose first argument, of this numba type, is given by its address."""
+    twin = _closed(_with_kept, kept=lowering.memory_of(kind)[1], function=_for_numba(function))
+    return _cached(twin, f"{digest(function)}-{_kind_stamp(kind)}")
+
+
+def _with_kept(address: int, *others: Any) -> Any:
+    return function(kept(address), *others)  # type: ignore[name-defined]  # noqa: F821
+
+
+def _kind_stamp(kind: Any) -> str:
+    return hashlib.sha256(_COMPILER + str(kind).encode()).hexdigest()[:16]
+
+
+def _closed(function: Callable[..., Any], /, **names: Any) -> types.FunctionType:
+    """Return a copy of a function whose globals are these names."""
+    twin = types.FunctionType(function.__code__, {"__name__": __name__, **names}, function.__name__)
+    twin.__module__ = __name__  # numba asks for it when it loads compiled code from the cache
+    return twin
 
 
 def _cached(twin: types.FunctionType, name: str, **options: bool) -> Any:

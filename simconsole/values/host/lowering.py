@@ -13,6 +13,38 @@ def teach() -> None:
     _teach_parts()
 
 
+def size_of(kind: Any) -> int:
+    """Return how many bytes a value of a numba type takes in memory."""
+    target: Any = import_module("numba.core.registry").cpu_target.target_context
+    return int(target.get_abi_sizeof(target.get_value_type(kind)))
+
+
+def memory_of(kind: Any) -> tuple[Any, Any]:
+    """Return two functions for compiled code: they write a value of a numba type at an address, and read it there."""
+    types: Any = import_module("numba.core.types")
+    intrinsic: Any = import_module("numba.extending").intrinsic
+
+    def place(context: Any, builder: Any, address: Any) -> Any:
+        return builder.inttoptr(address, context.get_value_type(kind).as_pointer())
+
+    @intrinsic  # type: ignore[untyped-decorator]
+    def keep(_typing: Any, address: Any, value: Any) -> Any:
+        def lower(context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
+            builder.store(arguments[1], place(context, builder, arguments[0]))
+            return context.get_dummy_value()
+
+        return (types.none(address, value), lower) if value == kind else None
+
+    @intrinsic  # type: ignore[untyped-decorator]
+    def kept(_typing: Any, address: Any) -> Any:
+        def lower(context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
+            return builder.load(place(context, builder, arguments[0]))
+
+        return kind(address), lower
+
+    return keep, kept
+
+
 def _teach_forget() -> None:
     """Compile `forget` to a barrier: an empty instruction that the compiler must assume changes memory."""
     types: Any = import_module("numba.core.types")

@@ -5,6 +5,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from simconsole.values.kernels import holding
 from simconsole.world.people.crossings import crossings_of
 from simconsole.world.people.footways import Footways, footways
 from simconsole.world.people.walking import (
@@ -17,6 +18,7 @@ from simconsole.world.people.walking import (
     WAY,
     Crowd,
     Others,
+    Walkers,
     put_on_way,
     step_people,
 )
@@ -44,7 +46,7 @@ class People:
         self._ways: Footways = footways(road_map, crossings)
         self._signals = [(crossing.signal, crossing.link) for crossing in crossings]
         self._rng = np.random.default_rng((seed, 1))
-        self._step_kernel, self._put = execution(step_people), execution(put_on_way)
+        self._execution, self._put = execution, execution(put_on_way)
         strips = len(self._ways.near_m)
         self._crowd = Crowd(np.ones(len(crossings), np.int64), np.zeros(strips, np.int64))
         self.crossed = Crossed(self._ways.over, self._ways.over_starts, self._ways.near_m, self._crowd.occupied)
@@ -57,13 +59,18 @@ class People:
         """Where people are, float64 [people, BOX]."""
         return self.rows[:, :BOX]
 
-    def step(self, shown: Sequence[str], others: Others, period_s: float) -> list[int]:
-        """Move everybody on while signals show `shown`; return who has come anew."""
+    def meet(self, others: Others) -> None:
+        """Let people look at those who are not on foot: in arrays that stay where they are."""
+        walkers = Walkers(self._ways, self.rows, self._crowd, others)
+        self._step_all: Callable[[float], None] = holding(self._execution(step_people), walkers)
+
+    def step(self, shown: Sequence[str], period_s: float) -> list[int]:
+        """Move everybody on while signals show `shown`; return who has come anew. They must have met the others."""
         if not len(self.rows):
             return []
         for number, (signal, link) in enumerate(self._signals):
             self._crowd.walks[number] = signal < 0 or _is_green(shown[signal], link)
-        self._step_kernel(self._ways, self.rows, self._crowd, others, period_s)
+        self._step_all(period_s)
         return [
             place for place in np.flatnonzero(self.rows[:, LENGTH] == 0.0).tolist() if self._waited(place, period_s)
         ]

@@ -62,9 +62,19 @@ class Others(NamedTuple):
     lengths_m: Row  # of all lanes
 
 
+class Walkers(NamedTuple):
+    """The arrays that each step works on, the same from step to step."""
+
+    ways: Footways
+    people: Row
+    crowd: Crowd
+    others: Others
+
+
 @kernel
-def step_people(ways: Footways, people: Row, crowd: Crowd, others: Others, period_s: float) -> None:
+def step_people(all_of: Walkers, period_s: float) -> None:
     """Move all people on by one period; write `people` and `crowd.occupied`."""
+    ways, people, crowd, others = all_of.ways, all_of.people, all_of.crowd, all_of.others
     crowd.occupied[:] = 0
     for own in range(len(people)):
         if people[own, LENGTH] > 0.0:

@@ -6,7 +6,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from simconsole.values.kernels import Row, kernel
+from simconsole.values.kernels import Row, holding, kernel
 from simconsole.values.signals import NO_AHEAD, AheadInput
 from simconsole.values.trigonometry import direction
 from simconsole.world.roads.road_map import Array
@@ -76,8 +76,9 @@ class Leaders:
             compile_kernel: `jit.compiled`; without it the search runs plain, to the same bits.
         """
         self._lists = compile_kernel is None  # plain Python reads them several times as fast as arrays
-        self._way = _way(route, self._lists)
-        self._search = leader_on if compile_kernel is None else compile_kernel(leader_on)
+        self._search = holding(
+            leader_on if compile_kernel is None else compile_kernel(leader_on), _way(route, self._lists)
+        )
         self._guess = 0  # the cell where the vehicle was: searches that begin there are short
 
     def find(self, ego: Box, users: Array) -> AheadInput:
@@ -88,7 +89,7 @@ class Leaders:
             users: the road users, float64 [users, FIELDS].
         """
         rows: Any = users.tolist() if self._lists else users
-        gap_m, speed_mps, self._guess = self._search(self._way, self._guess, *ego, rows)
+        gap_m, speed_mps, self._guess = self._search(self._guess, *ego, rows)
         return AheadInput(gap_m, speed_mps, NO_AHEAD.yield_m, NO_AHEAD.yield_s)
 
 

@@ -208,6 +208,19 @@ def indicators(net: Network, path: Row, vehicle: Row) -> float:
     return 0.0
 
 
+class Everybody(NamedTuple):
+    """The arrays that each step works on, the same from step to step: what `step_traffic` and `list_users` take."""
+
+    net: Network
+    values: Row
+    paths: Row
+    boxes: Row
+    turn: Turn
+    near: Row
+    ids: Row
+    users: Row
+
+
 class Stepped(NamedTuple):
     """What a step has brought."""
 
@@ -216,25 +229,23 @@ class Stepped(NamedTuple):
 
 
 @kernel
-def step_and_list(
-    net: Network,
-    values: Row,
-    paths: Row,
-    boxes: Row,
-    turn: Turn,
-    near: Row,
-    ids: Row,
-    users: Row,
-    step: int,
-    period_s: float,
-) -> Stepped:
-    """Do as `step_traffic` and `list_users`, in one call: each array that Python hands over takes its time."""
-    step_traffic(net, values, paths, boxes, turn, near, step, period_s)
+def step_and_list(all_of: Everybody, step: int, period_s: float) -> Stepped:
+    """Do as `step_traffic` and `list_users`; a `step` before the first one, -1, is none."""
+    if step < 0:
+        return Stepped(0, 0)
+    values = all_of.values
+    step_traffic(all_of.net, values, all_of.paths, all_of.boxes, all_of.turn, all_of.near, step, period_s)
     gone = 0
     for own in range(len(values)):
         if values[own, LENGTH] == 0.0:
             gone += 1
-    return Stepped(list_users(net, values, paths, boxes, ids, users), gone)
+    return Stepped(list_users(all_of.net, values, all_of.paths, all_of.boxes, all_of.ids, all_of.users), gone)
+
+
+@kernel
+def list_all(all_of: Everybody) -> int:
+    """Do as `list_users`."""
+    return list_users(all_of.net, all_of.values, all_of.paths, all_of.boxes, all_of.ids, all_of.users)
 
 
 @kernel

@@ -1,13 +1,13 @@
 """Built-in traffic on a road map: vehicles by a seed, parked cars, a lead vehicle, and the ego among them."""
 
 from collections.abc import Callable
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
 from simconsole.profiles.traffic import LeadVehicle, TrafficProfile
 from simconsole.values.height_field import HeightField, spline_at
-from simconsole.values.kernels import Row, kernel
+from simconsole.values.kernels import Row, holding, kernel
 from simconsole.values.trigonometry import direction
 from simconsole.world import traffic_columns as at
 from simconsole.world.people.people import People
@@ -23,7 +23,7 @@ from simconsole.world.traffic.parking import parked_cars
 from simconsole.world.traffic.placement import CLEAR_M, Placement
 from simconsole.world.traffic.road_users import FIELDS, Box
 from simconsole.world.traffic.signal_states import Lights, SignalStates, by_programs
-from simconsole.world.traffic.stepping import Stepped, list_users, step_and_list
+from simconsole.world.traffic.stepping import Everybody, Stepped, list_all, step_and_list
 
 Execution = Callable[[Any], Any]
 EGO_CLEAR_M: Final = 30.0
@@ -60,8 +60,6 @@ class Traffic:
         self._lights = Lights(road_map, signals or by_programs(road_map))
         cars = [place for place, lane in enumerate(road_map.lanes) if lane.drivable]
         self._lanes = LaneIndex(road_map.lanes, cars, nearest_segment).arrays
-        self._step_kernel, self._list_kernel = execution(step_and_list), execution(list_users)
-        self._put_box = execution(put_box)
         self._rng = np.random.default_rng(profile.seed)
         self._steps = 0
         count = profile.vehicles
@@ -88,14 +86,26 @@ class Traffic:
             crossed=self._people.crossed,
         )
         self._courtesy = Courtesy(self._net, lights, kept_free)
-        self._near = np.zeros(len(self._boxes), np.int64)
+        self._hold(execution)
         self._placement = Placement(self._net, self._rng)
         self._see_others(ego, 0.0)
         for row in range(count):
             self._place(row, anywhere=True)
         self._turn.lights[:] = self._lights.at(0.0)
         self._let_people_walk(0.0)  # nobody moves, but the kernels are compiled or loaded before any clock runs
-        self._advance(0)
+        self._step_all(-1, self.period_s)
+
+    def _hold(self, execution: Execution) -> None:
+        """Hand the arrays, which stay where they are, to the kernels."""
+        near = np.zeros(len(self._boxes), np.int64)
+        everybody = Everybody(
+            self._net, self._values, self._paths, self._boxes, self._turn, near, self._ids, self._users
+        )
+        self._step_all: Callable[[int, float], Stepped] = holding(execution(step_and_list), everybody)
+        self._list_all: Callable[[], int] = holding(execution(list_all), everybody)
+        self._put_box = holding(execution(put_box), Places(self._lanes, self._net.widths_m, self._boxes))
+        vehicles = self._boxes[: self._first_person]
+        self._people.meet(Others(vehicles, self._values, self._paths, self._net.lengths_m))
 
     def step(self, ego: Box | None) -> Array:
         """Move everybody on by one period and return where they are then, a table of road users.
@@ -106,7 +116,7 @@ class Traffic:
         self._see_others(ego, self.period_s)
         self._courtesy.step(self._boxes[self._ego].tolist(), self.period_s)
         self._let_people_walk(self.period_s)
-        stepped = self._advance(len(self._values))
+        stepped = self._step_all(self._steps, self.period_s)
         self._steps += 1
         if stepped.gone:
             self._let_others_come()
@@ -129,32 +139,13 @@ class Traffic:
 
     def road_users(self) -> Array:
         """Return where everybody is, float64 [users, FIELDS] as `RoadUser`: vehicles, those parked, people."""
-        return self._table(self._list_kernel(self._net, self._values, self._paths, self._boxes, self._ids, self._users))
+        return self._table(self._list_all())
 
     def _table(self, count: int) -> Array:
         """Return the first `count` of the users that were listed."""
         found = self._users[:count].copy()
         if self._ground is not None:
             found[:, 9] = spline_at(self._ground, 0, found[:, 2], found[:, 3])
-        return found
-
-    def _advance(self, count: int) -> Stepped:
-        """Run the kernel on the first `count` vehicles: all of them, or none."""
-        values, paths, turn = self._values, self._paths, self._turn
-        if count < len(values):
-            values, paths, turn = values[:count], paths[:count], turn._replace(lines=turn.lines[:count])
-        found: Stepped = self._step_kernel(
-            self._net,
-            values,
-            paths,
-            self._boxes,
-            turn,
-            self._near,
-            self._ids,
-            self._users,
-            self._steps,
-            self.period_s,
-        )
         return found
 
     def _see_others(self, ego: Box | None, period_s: float) -> None:
@@ -164,15 +155,13 @@ class Traffic:
             if box is None:
                 self._boxes[row, at.LENGTH] = 0.0
             else:
-                self._put_box(self._lanes, self._net.widths_m, self._boxes[row], box)
+                self._put_box(row, *box)
 
     def _let_people_walk(self, period_s: float) -> None:
         """Move those on foot on by a period; who comes anew is somebody else."""
         if not len(self._people.rows):
             return
-        vehicles = slice(0, self._first_person)
-        others = Others(self._boxes[vehicles], self._values, self._paths, self._net.lengths_m)
-        for place in self._people.step(self._lights.shown or (), others, period_s):
+        for place in self._people.step(self._lights.shown or (), period_s):
             self._ids[self._first_person + place] = self._next_id
             self._next_id += 1
         self._boxes[self._first_person :] = self._people.boxes
@@ -198,20 +187,37 @@ class Traffic:
         return np.column_stack((boxes[on_road, at.X], boxes[on_road, at.Y], clear[on_road]))
 
 
+class Places(NamedTuple):
+    """What `put_box` looks up, and where it writes."""
+
+    lanes: LaneArrays
+    widths_m: Row  # of all lanes
+    boxes: Row  # float64 [boxes, BOX]
+
+
 @kernel
-def put_box(lanes: LaneArrays, widths_m: Row, row: Row, box: Box) -> None:
-    """Write a box that is no vehicle of traffic into a row, float64 [BOX], and on which lane it is."""
-    heading = direction(box.yaw_rad)
-    row[at.X], row[at.Y], row[at.COSINE], row[at.SINE] = box.x_m, box.y_m, heading.cos, heading.sin
-    row[at.SPEED], row[at.LENGTH], row[at.WIDTH] = box.speed_mps, box.length_m, box.width_m
+def put_box(
+    places: Places,
+    number: int,
+    x_m: float,
+    y_m: float,
+    yaw_rad: float,
+    speed_mps: float,
+    length_m: float,
+    width_m: float,
+) -> None:
+    """Write a `Box` that is no vehicle of traffic into row `number` of the boxes, and on which lane it is."""
+    heading, lanes, row = direction(yaw_rad), places.lanes, places.boxes[number]
+    row[at.X], row[at.Y], row[at.COSINE], row[at.SINE] = x_m, y_m, heading.cos, heading.sin
+    row[at.SPEED], row[at.LENGTH], row[at.WIDTH] = speed_mps, length_m, width_m
     row[at.LANE], row[at.ALONG] = -1.0, 0.0
     found = nearest_segment(
-        lanes.rows, lanes.starts, lanes.items, lanes.grid, box.x_m, box.y_m, heading.cos, heading.sin, HEADING_M
+        lanes.rows, lanes.starts, lanes.items, lanes.grid, x_m, y_m, heading.cos, heading.sin, HEADING_M
     )
     if found.segment >= 0.0:
         segment = int(found.segment)
         lane = lanes.owners[segment]
-        if abs(found.lateral_m) <= 0.5 * widths_m[int(lane)]:
+        if abs(found.lateral_m) <= 0.5 * places.widths_m[int(lane)]:
             row[at.LANE], row[at.ALONG] = lane, lanes.rows[segment, 5] + found.along_m
 
 

@@ -1,20 +1,23 @@
 """The twin: what it compiles, what its cache depends on, what it refuses."""
 
+import gc
+import math
 import os
+import pickle
 import subprocess
 import sys
 import types
 from collections.abc import Callable
 from enum import IntEnum, IntFlag
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
 
 from simconsole.values.host import jit as compiling
 from simconsole.values.host.jit import compiled, digest, plain
-from simconsole.values.kernels import Row, kernel, stage
+from simconsole.values.kernels import Row, holding, kernel, stage
 from simconsole.values.layout import Part, read
 from tests.paths import ROOT
 
@@ -275,3 +278,50 @@ def test_importing_loads_no_numba() -> None:
     code = "import sys, simconsole.values.host.jit, simconsole.vehicle.car.car_step; sys.exit('numba' in sys.modules)"
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     assert subprocess.run([sys.executable, "-c", code], check=False, env=environment).returncode == 0
+
+
+class Grid(NamedTuple):
+    rows: Row
+    numbers: Row
+
+
+class World(NamedTuple):
+    grid: Grid
+    share: float
+
+
+@kernel
+def summed_over(world: World, row: int, factor: float) -> float:
+    """Sum a row of the grid, and count the call in its first number."""
+    world.grid.numbers[0] += 1
+    found = 0.0
+    for value in world.grid.rows[row]:
+        found += value
+    return found * factor * world.share
+
+
+def a_world(share: float = 0.5) -> World:
+    return World(Grid(np.arange(6.0).reshape(2, 3), np.zeros(4, np.int64)), share)
+
+
+@pytest.mark.parametrize("execution", [plain, compiled])
+def test_arrays_that_are_held_are_seen_as_they_are_now(execution: Callable[..., Any]) -> None:
+    one, other = a_world(), a_world(0.25)
+    first, second = holding(execution(summed_over), one), holding(execution(summed_over), other)
+    assert (first(1, 2.0), second(1, 2.0), first(0, 1.0)) == (12.0, 6.0, 1.5)
+    one.grid.rows[1] = 8.0
+    assert first(1, 2.0) == 24.0
+    assert (one.grid.numbers[0], other.grid.numbers[0]) == (3, 1)
+
+
+def test_held_arrays_live_as_long_as_the_call() -> None:
+    call = holding(compiled(summed_over), a_world())
+    gc.collect()
+    waste = [np.full((2, 3), math.nan) for _ in range(100)]
+    assert call(1, 2.0) == 12.0
+    assert len(waste) == 100
+
+
+def test_a_call_that_holds_arrays_stays_in_its_process() -> None:
+    with pytest.raises(TypeError, match="another process"):
+        pickle.dumps(holding(compiled(summed_over), a_world()))

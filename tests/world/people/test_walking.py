@@ -8,7 +8,18 @@ from simconsole.world import traffic_columns as at
 from simconsole.world.kinds.worlds import open_map
 from simconsole.world.people.crossings import crossings_of
 from simconsole.world.people.footways import Footways, footways
-from simconsole.world.people.walking import PACE, PERSON, SIZE_M, STEPPED, WALK, WAY, Crowd, Others, step_people
+from simconsole.world.people.walking import (
+    PACE,
+    PERSON,
+    SIZE_M,
+    STEPPED,
+    WALK,
+    WAY,
+    Crowd,
+    Others,
+    Walkers,
+    step_people,
+)
 from simconsole.world.roads.road_map import Array
 
 PERIOD_S = 0.04
@@ -41,7 +52,7 @@ class Scene:
     def walk(self, time_s: float) -> Array:
         others = Others(self.boxes, np.zeros((0, at.VALUES)), np.zeros((0, at.PATH), np.int64), self.lengths)
         for _ in range(round(time_s / PERIOD_S)):
-            step_people(self.ways, self.people, self.crowd, others, PERIOD_S)
+            step_people(Walkers(self.ways, self.people, self.crowd, others), PERIOD_S)
         return np.asarray(self.people[0])
 
 
