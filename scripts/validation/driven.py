@@ -12,13 +12,21 @@ from simconsole.profiles.vehicle import CarProfile
 CARS = ("hatchback", "light_van", "commonroad_bmw320i")
 
 NORMAN = "assisted cars; the test is that of Norman, SAE 840069, the range general knowledge"
+SEGEL = (
+    "assisted cars; the test is that of Norman, SAE 840069; drivers found 23 N m/g near the optimum [8]; the range "
+    "around it general knowledge"
+)
 SHARP = "Sharp and Granger, Proc. IMechE D 217, 2003: with assistance"
 ADAC = "about 500 brake tests of ADAC: mean 36.4 m, 31.3 to 47.8 m"
 GENERAL = "usual of the class; general knowledge, no table was at hand"
 PERFORMANCE = "cars: [1]; vans: [2]"
 SINGLE_TRACK = "cars: [3] and [4], which measured 3.6 deg/g at 2.67 m; vans: none was found, that of cars"
+CHARACTERISTIC = f"{SINGLE_TRACK}; taught as usual: 65 to 100 km/h [9]"
 ROADHOLDING = "two hatchbacks had 0.83 g [5]; the range around it general knowledge"
-ROLL = "measured were 3.5 to 4.4 deg/g [6], [7]; the range around it general knowledge"
+ROLL = (
+    "measured were 3.5 to 4.4 deg/g [6], [7]; called typical: small cars 5, large ones 7 deg/g [10]; the ranges "
+    "around them general knowledge"
+)
 ZOMOTOR = "Zomotor, Fahrwerktechnik: Fahrverhalten; not looked up"
 
 SOURCES = (
@@ -35,6 +43,11 @@ SOURCES = (
     "Eindhoven University of Technology, 2016), Jaguar F-Pace 3.5 deg/g (MotorTrend, 2016).",
     "M. K. Salaani and G. J. Heydinger, SAE 2000-01-0700, as the validation of the simulator Skidpad "
     "reads its plots: Jeep Cherokee 3.6 deg/g.",
+    "L. Segel, An Investigation of Automobile Handling as Implemented by a Variable-Steering Automobile, Human "
+    "Factors, August 1964; its abstract at swov.nl: 17 ft lb/g, by five drivers in one car.",
+    "euromotor.org, slides on driving dynamics (presentation 6, slide 16): characteristic velocity, of today's "
+    "vehicles.",
+    "A. Rastogi, On a Roll: Roll rates in a Vehicle, 7 August 2020, archit-rstg.medium.com: indicative values.",
 )
 """Where ranges were read, in the order of their numbers."""
 
@@ -74,7 +87,7 @@ FIGURES = (
         "km/h",
         (73.0, 131.0),
         (73.0, 131.0),
-        SINGLE_TRACK,
+        CHARACTERISTIC,
     ),
     Figure(
         "Limit", "steady_state_circle", "highest_lateral_acceleration_mps2", "m/s²", (7.5, 9.5), (6.5, 8.5), ROADHOLDING
@@ -129,7 +142,7 @@ FIGURES = (
         "N m/g",
         (15.0, 30.0),
         (15.0, 30.0),
-        NORMAN,
+        SEGEL,
     ),
     Figure("Weave: torque at 0.1 g", "weave", "steering_torque_at_01_g_nm", "N m", (1.5, 2.5), (1.5, 3.0), NORMAN),
     Figure("Weave: friction at 0 g", "weave", "steering_torque_at_0_g_nm", "N m", (0.5, 1.5), (0.5, 2.0), NORMAN),
@@ -158,7 +171,8 @@ MANOEUVRES: dict[str, dict[str, Any]] = {
     "parking_effort": {"kind": "parking_effort"},
 }
 
-NOT_MODELLED = {("commonroad_bmw320i", figure.value) for figure in FIGURES if figure.source in (NORMAN, SHARP)}
+AT_THE_RIM = ("weave", "parking_effort")
+NOT_MODELLED = {("commonroad_bmw320i", figure.value) for figure in FIGURES if figure.manoeuvre in AT_THE_RIM}
 """CommonRoad's models have no trail and no turn slip: there is nothing at the rim to measure."""
 
 

@@ -19,7 +19,14 @@ from simconsole.control.authority import (
 from simconsole.control.lights import Lights, lights_of, switched
 from simconsole.control.modes.decision import Decision, decide, takeover_stage
 from simconsole.control.modes.restart import Restart, restart_of
-from simconsole.control.modes.takeover import WheelWatch, steering_taken, throttle_held, throttle_overrides, watch_wheel
+from simconsole.control.modes.takeover import (
+    WheelWatch,
+    pull,
+    steering_taken,
+    throttle_held,
+    throttle_overrides,
+    watch_wheel,
+)
 from simconsole.control.modes.triggers import link_lost
 from simconsole.control.requests.commander import Controllers, assess
 from simconsole.control.requests.control_settings import ControlSettings
@@ -109,7 +116,7 @@ def _observe(now: TickContext) -> Observed:
         now.driver.hand_wheel_rad,
         now.driver.hand_wheel_radps - now.explained_radps,
         now.explained_rad,
-        abs(now.human_nm) - now.carried_nm,
+        pull(now.human_nm, now.hand_wheel_radps2, now.carried_nm),
         watched(now.before.mode),
         person.wheel_trusted > 0.0,
         now.settings,

@@ -28,6 +28,8 @@ MAX_FRAME_BYTES: Final = 1 << 22
 TORN: Final = "torn"
 _HEAD: Final = Struct("<II")
 _TICK: Final = Struct("<q")
+_CHAINED: Final = Struct(f"<{HASH_BYTES}sq")
+"""What precedes a state vector while it is hashed: the hash before it, and its tick."""
 _MESSAGE: Final = Struct("<HI")
 _HASHER: Final = blake2b(digest_size=HASH_BYTES)
 
@@ -97,9 +99,8 @@ def seal_block(previous: bytes, tick: int, vectors: Row) -> tuple[Row, bytes]:
     digest, promised = previous, size - _HEAD.size
     for at in range(0, len(content), size):
         end = at + size
-        # Length and checksum take the place of the previous hash, which precedes tick and vector while they are hashed.
-        content[at : at + HASH_BYTES] = digest
-        _TICK.pack_into(content, at + HASH_BYTES, tick)
+        # Length and checksum take the place of the previous hash once the vector is hashed.
+        _CHAINED.pack_into(content, at, digest, tick)
         digest = content[end - HASH_BYTES : end] = _hash(content[at : end - HASH_BYTES])
         _HEAD.pack_into(content, at, promised, crc32(content[at + _HEAD.size : end]))
         tick += 1

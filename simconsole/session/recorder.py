@@ -59,6 +59,8 @@ class LogRecorder:
     def _messages(self) -> list[tuple[str, bytes]]:
         """Return what the coming tick brings with it."""
         acts = self._take_acts()
+        if not acts and not self._sources:
+            return []
         for act in acts:
             self._summary.add(act)
         others = (message for source in self._sources for message in source.take_messages())

@@ -33,7 +33,7 @@ from simconsole.values.signals import (
 from simconsole.values.state_vector import INPUT_WIDTH, LAYOUT, PLATFORM_AT, Snapshot, TickInputs, columns
 from simconsole.world.obstacles.sides import FixedThings
 from simconsole.world.obstacles.striking import strike
-from simconsole.world.rules.road_rules import NO_ROADS, RoadRules
+from simconsole.world.rules.road_rules import RoadRules
 from simconsole.world.rules.situation import look_around
 
 Execution = Callable[[Callable[..., Any]], Callable[..., Any]]
@@ -76,7 +76,7 @@ class Console(NamedTuple):
     strike: Callable[[Row, Row, FixedThings], None] | None  # None: the world has no fixed things
     step: Step
     force_feedback: Callable[[Row, Row, Row, float], None] | None  # None: the wheel has no motor
-    roads: RoadRules  # NO_ROADS: the world has no rules
+    roads: RoadRules | None  # None: the world has no rules
     look_around: Callable[[Row, Row, RoadRules, float], None] | None  # None: likewise
     block: Callable[[Row, Row, Row, Row, Row, Row, Row, float, int], None]  # see `advance_block`; it holds the roads
 
@@ -113,7 +113,6 @@ def build_console(
         raise ValueError(f"tick_hz {tick_hz} does not divide {PHYSICS_HZ}")
     feel = force_feedback if force.max_torque_nm > 0.0 else None
     look, struck = (None, None) if roads is None else (look_around, strike)
-    roads = NO_ROADS if roads is None else roads
     return Console(
         tick_hz=tick_hz,
         tick_s=1.0 / tick_hz,
@@ -198,7 +197,8 @@ def in_order(
     """Return one tick: its stages in their order. Nowhere else do they stand.
 
     One text, two executions: of compiled stages, called one by one, with a `mark` that hears the end of each; and of
-    the kernels themselves, without a mark, compiled as a whole (`advance_block`).
+    the kernels themselves, without a mark, compiled as a whole (`advance_block`). Only `strike` and `look_around` read
+    `roads`: without them it is None, for each of its tables would have to be handed over in every call.
     """
 
     @kernel
@@ -312,6 +312,7 @@ def decide(previous: Row, row: Row, settings: Row, tick_s: float) -> None:
         explained_rad=motor.explained_rad,
         explained_radps=motor.explained_radps,
         human_nm=read(previous, LAYOUT.torque).human_nm,
+        hand_wheel_radps2=(driver.hand_wheel_radps - read(previous, LAYOUT.driver).hand_wheel_radps) / tick_s,
         carried_nm=motor.carried_nm,
         wheel_motor=motor.live,
         settings=control,

@@ -13,7 +13,7 @@ from simconsole.tick.advance import Console, ConsoleState, advance_block
 from simconsole.values.kernels import Row
 from simconsole.values.latency import LatencyStatistics
 from simconsole.values.protocols import NobodyCommands, NobodySeated, Output
-from simconsole.values.signals import AheadInput, Button, Event
+from simconsole.values.signals import NO_AHEAD, AheadInput, Button, Event
 from simconsole.values.state_vector import LAYOUT
 
 BLOCK_TICKS: Final = 64
@@ -21,10 +21,8 @@ BLOCK_TICKS: Final = 64
 
 _SAMPLE: Final = LAYOUT.sample.slice
 _ROS: Final = LAYOUT.ros.slice
-_EVENTS: Final = LAYOUT.events.slice
 _ECU: Final = LAYOUT.ecu.slice
 _AHEAD: Final = LAYOUT.ahead.slice
-_IMPACT: Final = LAYOUT.impact.slice
 _COLLISION_AT: Final = LAYOUT.rules.at("collision")
 _EVENTS_AT: Final = LAYOUT.events.at("events")
 _EDGES_AT: Final = LAYOUT.driver.at("edges")
@@ -82,7 +80,7 @@ class _Parts(NamedTuple):
     ecu: ForeseeingCommands
     recorder: BlockRecorder
     outputs: Sequence[PatientOutput]
-    ahead: Callable[[], AheadInput]
+    ahead: Callable[[], AheadInput] | None  # None: there is nobody
 
 
 class Foresight:
@@ -92,12 +90,14 @@ class Foresight:
         self._console = console
         self._parts = parts
         self._latencies = latencies
+        # A tick changes no input. So who is not there, and says the same for ever, is written once; and what no
+        # foreseen tick has, events and impacts, stays 0.
         self._rows = np.zeros((BLOCK_TICKS, console.width))
-        # Who is not there says the same for ever: it is written once, for a tick changes no input.
         self._seated = not isinstance(parts.devices, NobodySeated)
         self._wired = not isinstance(parts.ecu, NobodyCommands)
         parts.devices.foresee(1, self._rows[:, _SAMPLE])
         parts.ecu.foresee(1, self._rows[:, _ECU])
+        self._rows[:, _AHEAD] = NO_AHEAD
 
     @classmethod
     def of(
@@ -107,9 +107,12 @@ class Foresight:
         recorder: object,
         outputs: Sequence[Output],
         latencies: LatencyStatistics | None,
-        ahead: Callable[[], AheadInput],
+        ahead: Callable[[], AheadInput] | None,
     ) -> Self | None:
-        """Return the foresight of a drive with these devices, commands of ROS side and ECU; None if a part has none."""
+        """Return the foresight of a drive with these devices, commands of ROS side and ECU; None if a part has none.
+
+        `ahead` says whom the vehicle follows, None if there is nobody on the road.
+        """
         devices, ros, ecu = sources
         if not (
             isinstance(devices, ForeseeingDevices)
@@ -136,8 +139,8 @@ class Foresight:
         if count < 1:
             return state, 0
         rows = self._rows[:count]
-        rows[:, _EVENTS] = rows[:, _IMPACT] = 0.0
-        rows[:, _AHEAD] = self._parts.ahead()  # the same until the last tick's outputs have looked
+        if self._parts.ahead is not None:
+            rows[:, _AHEAD] = self._parts.ahead()  # the same until the last tick's outputs have looked
         advance_block(state.vector, rows, self._console)
         if self._seated:
             count = _up_to_pause(rows)

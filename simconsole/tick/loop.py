@@ -110,7 +110,7 @@ def run(
     end, latencies = state.tick + ticks, components.latencies
     outputs = [(output, getattr(output, "hop", Hop.OTHERS)) for output in components.outputs]
     ahead_now, take_impact = _ahead_of(components), _impact_of(components)
-    foresight = _foresight(console, components, ahead_now) if at_once else None
+    foresight = _foresight(console, components) if at_once else None
     while state.tick < end and not finished(snapshot):
         impact = take_impact()
         if impact.first_touch:
@@ -173,7 +173,7 @@ def _nobody_strikes() -> ImpactInput:
     return NO_IMPACT
 
 
-def _foresight(console: Console, components: Components, ahead_now: Callable[[], AheadInput]) -> Foresight | None:
+def _foresight(console: Console, components: Components) -> Foresight | None:
     """Return the foresight of a drive; None where somebody must act or wait in every tick."""
     if (
         components.seat is not None
@@ -182,7 +182,8 @@ def _foresight(console: Console, components: Components, ahead_now: Callable[[],
     ):
         return None
     sources = (components.devices, components.commands, components.ecu)
-    return Foresight.of(console, sources, components.recorder, components.outputs, components.latencies, ahead_now)
+    ahead = None if components.road_users is None else components.road_users.ahead
+    return Foresight.of(console, sources, components.recorder, components.outputs, components.latencies, ahead)
 
 
 def come_to_rest(console: Console, state: ConsoleState, recorder: Recorder) -> ConsoleState:

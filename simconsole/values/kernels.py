@@ -43,7 +43,7 @@ def is_stage(value: object) -> bool:
     return bool(getattr(value, "__stage__", False))
 
 
-def holding(call: Callable[..., Any], held: tuple[Any, ...]) -> Callable[..., Any]:
+def holding(call: Callable[..., Any], held: tuple[Any, ...] | None) -> Callable[..., Any]:
     """Return `call`, a kernel or its compiled twin, with its first argument handed over for good.
 
     Each array that Python hands to compiled code takes its time at every call, whatever is done with it: those that
@@ -51,7 +51,7 @@ def holding(call: Callable[..., Any], held: tuple[Any, ...]) -> Callable[..., An
 
     Args:
         call: what an execution makes of a kernel.
-        held: a `typing.NamedTuple` of arrays, numbers, and such tuples; its arrays must stay where they are.
+        held: a `typing.NamedTuple` of arrays, numbers, and such tuples, or None; its arrays must stay where they are.
     """
     hold: Callable[..., Callable[..., Any]] | None = getattr(call, "hold", None)
     return partial(call, held) if hold is None else hold(held)

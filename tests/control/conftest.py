@@ -129,6 +129,7 @@ class Rig:
             0.0,
             self.human_nm,
             0.0,
+            0.0,
             self.wheel_motor,
             self.settings,
             self.tick_s,

@@ -104,6 +104,7 @@ def drive(inputs: Row, outputs: Row, row: Row, before: Row, vehicle_row: Row, ti
             0.0,
             given[HUMAN_AT],
             0.0,
+            0.0,
             1.0,
             s,
             tick_s,

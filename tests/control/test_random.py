@@ -219,7 +219,7 @@ def test_from_every_mode_a_person_gets_back_to_manual(long_drive: Drive) -> None
                 now = TickContext(
                     driver, remote, remote, happened, vehicle, memory, ros_link, ecu_link, NEVER_TICKS, NEVER_TICKS,
                     arbitration, command,
-                    0.0, 0.0, 0.0, 0.0, 0.0, s, long_drive.tick_s,
+                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, s, long_drive.tick_s,
                 )  # fmt: skip
                 memory, ros_link, ecu_link, arbitration, request = arbitrate(now)
                 command = gate(request, remote, arbitration, command, vehicle, s, long_drive.tick_s, 0.0)

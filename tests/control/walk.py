@@ -290,6 +290,7 @@ def walk(
             0.0,
             g[HUMAN],
             0.0,
+            0.0,
             figures[2],
             s,
             tick_s,

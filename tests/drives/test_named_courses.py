@@ -97,3 +97,13 @@ def test_plain_trackers_drive_the_demos_course_behind_the_gate(tmp_path: Path, t
     print(f"measured: {tracker}: {done}")
     assert not done.stopped
     assert done.max_cm <= 50.0
+
+
+def test_resting_hands_that_a_fast_wheel_carries_along_take_nothing_over(tmp_path: Path) -> None:
+    """A bend of 16 m that begins within 3.3 m, by a slow steering: the motor unwinds the wheel at 590 deg/s."""
+    seed = 3241296937210489
+    link = f"{{seed: {seed}, delay_ms: 40, localisation: {{position_noise_m: 0.02, yaw_noise_deg: 0.2}}}}"
+    world = random_course(np.random.default_rng(seed))
+    done = tracked(world, "commonroad_bmw320i", link, tmp_path / "course")
+    print(f"measured: a wheel that is turned fast: {done}")
+    assert not done.stopped

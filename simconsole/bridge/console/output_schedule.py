@@ -42,7 +42,8 @@ class OutputSchedule:
         self._rates_hz = tuple({output.rate_hz for output in self.outputs})
         self._watched = tuple({output.watched for output in self.outputs if output.watched is not None})
         self._seen: list[float | None] = [None] * len(self._watched)
-        self._together: dict[tuple[bool, ...], tuple[ScheduledOutput, ...]] = {}
+        self._unchanged = (False,) * len(self._watched)
+        self._together: dict[tuple[bool, tuple[bool, ...], tuple[bool, ...]], tuple[ScheduledOutput, ...]] = {}
         """The topics that are due by these rates and changes, found once: a drive has a handful of such sets."""
         self._last_tick: int | None = None  # that was asked about
         self._repeats = all(rate_hz % 1.0 == 0.0 for rate_hz in self._rates_hz)  # what is due, each second
@@ -55,9 +56,11 @@ class OutputSchedule:
         self._last_tick = tick
         rates = self._rates_due(tick, last, tick_hz)
         values: list[float | None] = [float(snapshot.vector[column]) for column in self._watched]
-        changes = [now != before for now, before in zip(values, self._seen, strict=True)]
-        self._seen = values
-        which = (odometry, *rates, *changes)
+        changes = self._unchanged
+        if values != self._seen:
+            changes = tuple(now != before for now, before in zip(values, self._seen, strict=True))
+            self._seen = values
+        which = (odometry, rates, changes)
         found = self._together.get(which)
         if found is None:
             found = self._together[which] = self._due_by(odometry, rates, changes)
@@ -74,7 +77,9 @@ class OutputSchedule:
                 self._due_rates[key] = found
         return found
 
-    def _due_by(self, odometry: bool, rates: tuple[bool, ...], changes: list[bool]) -> tuple[ScheduledOutput, ...]:
+    def _due_by(
+        self, odometry: bool, rates: tuple[bool, ...], changes: tuple[bool, ...]
+    ) -> tuple[ScheduledOutput, ...]:
         """Return the topics that are due if these of the rates are, and these of the watched columns have changed."""
         rates_hz = {rate_hz for rate_hz, due in zip(self._rates_hz, rates, strict=True) if due}
         changed = {column for column, due in zip(self._watched, changes, strict=True) if due}

@@ -3,6 +3,7 @@
 Source: ROSBRIDGE_PROTOCOL.md of rosbridge_suite. Fields a peer adds to an operation are ignored unless named here.
 """
 
+from functools import lru_cache
 from typing import Annotated, Any, Final, Literal
 
 import msgspec
@@ -337,6 +338,7 @@ def write_status(level: str, text: str, identifier: Id = None) -> bytes:
     return orjson.dumps(fields)
 
 
+@lru_cache(maxsize=256)
 def publish_head(topic: str) -> bytes:
     """Return a publish operation up to its message: message and a closing brace follow."""
     return b'{"op":"publish","topic":' + orjson.dumps(topic) + b',"msg":'

@@ -126,9 +126,11 @@ class LockstepConnection:
             return
         session = self.session
         self._collect()
-        waits = session is not None and (self._writer.is_inside or session.due_ns() is not None)
-        if session is not None and waits and self._web.state is State.OPEN:
-            self._unsent += self._writer.batch(partial(session.next_text, now_ns), UNSENT_BYTES - len(self._unsent))
+        if session is not None and self._web.state is State.OPEN:
+            if self._writer.is_inside or session.due_ns() is not None:
+                self._unsent += self._writer.batch(partial(session.next_text, now_ns), UNSENT_BYTES - len(self._unsent))
+            if not self._unsent:
+                return
         self._send()
 
     def check(self) -> None:

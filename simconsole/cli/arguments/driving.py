@@ -1,5 +1,6 @@
 """The commands that drive, and those beside a drive."""
 
+import os
 from typing import Any, Final
 
 from simconsole.cli.arguments.command import command, number
@@ -11,7 +12,7 @@ _MAX_DELAY_MS: Final = 6000.0
 
 
 def driving(commands: Any) -> None:
-    """Add demo, drive and check."""
+    """Add demo, drive, check and sweep."""
     demo = command(commands, "demo", "demo:demo", "the whole way once, with no hardware: person, autopilot, report")
     demo.add_argument("--perfect", action="store_true", help="exact odometry and no delay on the autopilot's link")
     demo.add_argument("--realtime", action="store_true", help="pace it, with every worker in its own process")
@@ -43,6 +44,16 @@ def driving(commands: Any) -> None:
     check.add_argument("--junit", metavar="FILE", help="write a JUnit report")
     check.add_argument("--review", metavar="FILE", help="write accepted and driven over each other, where they differ")
     check.add_argument("--update-golden", action="store_true", help="accept what was driven as the new golden")
+
+    sweep = command(commands, "sweep", "sweep.command:sweep", "many drives of one plan into one table")
+    sweep.add_argument("plan", metavar="PLAN", help="a .yaml file: sessions or scenarios, values, seeds")
+    sweep.add_argument("--jobs", type=int, default=os.cpu_count() or 1, metavar="N", help="processes (default: cores)")
+    sweep.add_argument("--engine", choices=("local", "dask"), default="local", help="where: here, or Dask's workers")
+    sweep.add_argument("--scheduler", metavar="URL", help="of Dask: tcp://HOST:8786 (extra `dask`)")
+    sweep.add_argument("--drive", type=int, metavar="INDEX", help="only this one, into a bundle")
+    sweep.add_argument(
+        "--out", metavar="DIR", help="its folder (default: out/sweep-PLAN); one that was cut off there goes on"
+    )
 
 
 def beside_a_drive(commands: Any) -> None:

@@ -33,6 +33,7 @@ class TickContext(NamedTuple):
     explained_rad: float  # how far the wheel's motor alone has moved it since engagement; 0 without a motor
     explained_radps: float  # how fast
     human_nm: float  # the person's torque at the rim, estimated; 0 without a motor
+    hand_wheel_radps2: float  # its acceleration
     carried_nm: float  # how much of it was held at engagement already and is no take-over
     wheel_motor: float  # 1 while the wheel's motor obeys
     settings: ControlSettings

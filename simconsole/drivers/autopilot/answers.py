@@ -47,6 +47,7 @@ class Answers:
     ) -> None:
         """Ask `tracker`, tell people by `say`, obey `lights` and `yields`, and keep behind `others`."""
         self._tracker, self._say, self._lights, self._others, self._yields = tracker, say, lights, others, yields
+        self._obeys = lights is not None or yields is not None
         self.statistics = TrackingStatistics()
         self._withholds = False
         self._newest_s = -math.inf
@@ -60,7 +61,7 @@ class Answers:
         if stamp_s < self._newest_s:
             tracker.s_m = None
         self._newest_s = stamp_s
-        if tracker.s_m is not None:
+        if tracker.s_m is not None and self._obeys:
             tracker.along.stop = self._stop(tracker.s_m, seen.vx_mps, stamp_s)
         if self._others is not None:
             tracker.along.leader = self._others.leader(seen, stamp_s)

@@ -75,6 +75,7 @@ class Tracker:
         self.lateral_m = 0.0
         self.heading_error_rad = 0.0
         self._car, self._timing, self._asked = car, timing, asked_at_most(gate)
+        self._wheelbase_m, self._most_tangent = car.wheelbase_m, math.tan(car.max_road_wheel_rad)
         self.along = SpeedControl(course, planned_within(comfort, gate), timing.period_s)
         self._feedback, self._preview = _gains_by_speed(car, timing, weights)
         self._curvature_step_m, self._curvature = _curvatures(course)
@@ -157,17 +158,17 @@ class Tracker:
 
     def _limited(self, change: float, speed: float, engaged: bool) -> float:
         """Return the command after a change, as far as steering and gate go; while not engaged no gate holds it."""
-        tightest = self._car.wheelbase_m / max(speed * speed, 1.0)
+        tightest = self._wheelbase_m / max(speed * speed, 1.0)
         rate = min(_STEERING_RATE_RADPS, self._asked.lateral_jerk_mps3 * tightest) if engaged else _STEERING_RATE_RADPS
         step = rate * self._timing.period_s
-        limit = min(math.tan(self._car.max_road_wheel_rad), self._asked.lateral_mps2 * tightest)
+        limit = min(self._most_tangent, self._asked.lateral_mps2 * tightest)
         return clip(self._command + clip(change, -step, step), -limit, limit)
 
     def _follow(self, seen: VehicleMotion, speed: float) -> None:
         """Take steering and acceleration from the car's motion: someone else drives it."""
         if speed > _SPEEDS_MPS[0]:
             needed = self._car.wheelbase_m + self._car.understeer_radps2pm * speed * speed
-            limit = math.tan(self._car.max_road_wheel_rad)
+            limit = self._most_tangent
             self._wheel = self._command = clip(seen.yaw_rate_radps / speed * needed, -limit, limit)
         else:
             self._wheel = self._command = 0.0

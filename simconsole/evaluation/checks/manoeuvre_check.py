@@ -33,13 +33,13 @@ class Driven(NamedTuple):
     digest: str  # chained over all attempts
 
 
-def drive(scenario: ScenarioProfile, manoeuvre: Manoeuvre) -> Driven:
-    """Drive every attempt of a manoeuvre and evaluate it.
+def drive(scenario: ScenarioProfile, manoeuvre: Manoeuvre, resolved: ResolvedSession | None = None) -> Driven:
+    """Drive every attempt of a manoeuvre and evaluate it; `resolved` takes the place of the scenario's own session.
 
     Raises:
         ProfileError: a profile that the scenario names is missing or wrong; it watches a script but has none.
     """
-    resolved = resolve(scenario.session)
+    resolved = resolve(scenario.session) if resolved is None else resolved
     console, _ = assemble(resolved, compiled)
     at_work = drive_manoeuvre(manoeuvre, console.platform, scenario.duration_s)
     ticks, digest = 0, START_OF_CHAIN

@@ -22,7 +22,7 @@ from simconsole.recording.framing import START_OF_CHAIN, chain
 from simconsole.session.pacing import UnpacedPacer
 from simconsole.session.resolution import load_scenario, resolve
 from simconsole.tick.advance import Console
-from simconsole.tick.assembly import assemble
+from simconsole.tick.assembly import ResolvedSession, assemble
 from simconsole.tick.isolation import isolated
 from simconsole.tick.loop import Components, Recorder, run
 from simconsole.values.errors import ProfileError
@@ -100,9 +100,14 @@ def _check_manoeuvre(scenario: ScenarioProfile, manoeuvre: Manoeuvre, path: Path
     )
 
 
-def drive_scenario(scenario: ScenarioProfile, recorder_of: Callable[[Console], R]) -> R:
-    """Drive a scenario without files into the recorder that `recorder_of` makes, and return that."""
-    resolved = resolve(scenario.session)
+def drive_scenario(
+    scenario: ScenarioProfile, recorder_of: Callable[[Console], R], resolved: ResolvedSession | None = None
+) -> R:
+    """Drive a scenario without files into the recorder that `recorder_of` makes, and return that.
+
+    `resolved` takes the place of the scenario's own session: the same with other values.
+    """
+    resolved = resolve(scenario.session) if resolved is None else resolved
     console, state = assemble(resolved, compiled)
     tick_hz = console.tick_hz
     devices: DeviceSource = NobodySeated()

@@ -157,7 +157,7 @@ def _entry(function: Callable[..., Any]) -> Any:
     return dispatcher
 
 
-def _held(function: Callable[..., Any], held: tuple[Any, ...]) -> Callable[..., Any]:
+def _held(function: Callable[..., Any], held: tuple[Any, ...] | None) -> Callable[..., Any]:
     """Return the compiled twin with its first argument in memory, where compiled code finds it by its address."""
     kind = _numba().typeof(held)
     memory = np.zeros(lowering.size_of(kind), np.uint8)

@@ -9,7 +9,7 @@ from simconsole.values.kernels import Row
 from simconsole.world.obstacles.sides import NOBODY, Body, FixedThings, fixed_things
 from simconsole.world.roads.lane_graph import Leg
 from simconsole.world.roads.lane_index import LaneArrays, LaneIndex, nearest_segment
-from simconsole.world.roads.road_map import ROAD, GeoReference, MapReport, RoadMap, active
+from simconsole.world.roads.road_map import ROAD, RoadMap, active
 from simconsole.world.rules.approaches import Approach, ahead_of_lanes
 from simconsole.world.rules.timetable import (
     Timetable,
@@ -101,17 +101,3 @@ def road_rules(road_map: RoadMap, legs: Sequence[Leg], tick_hz: int, front_m: fl
 
 def _table(rows: Sequence[tuple[float, ...]], kind: type[tuple[float, ...]]) -> Row:
     return np.array(rows, dtype=np.float64).reshape(-1, len(kind._fields))  # type: ignore[attr-defined]
-
-
-_NO_MAP: Final = RoadMap(
-    lanes=(),
-    edges=(),
-    connections=(),
-    signals=(),
-    junctions=(),
-    roundabouts=(),
-    geo=GeoReference(0.0, 0.0, "!"),
-    report=MapReport((), ()),
-)
-NO_ROADS: Final = road_rules(_NO_MAP, (), 1, 0.0)
-"""The rules of a world that has none."""

@@ -10,7 +10,6 @@ from simconsole.world.rules.road_rules import (
     IN_JUNCTION,
     LENGTH,
     LIMIT,
-    NO_ROADS,
     SHOWN,
     SIGNAL,
     road_rules,
@@ -41,8 +40,3 @@ def test_approaches_that_show_the_same_share_a_row() -> None:
         states = rules.shown[first : first + phases, 0]
         assert set(states) <= {float(state) for state in SignalState}
         assert (rules.shown[first : first + phases, 1] < FAR).all() == (len(set(states)) > 1)
-
-
-def test_world_without_rules_has_empty_tables() -> None:
-    assert not NO_ROADS.lanes.size
-    assert not NO_ROADS.segments.rows.size

@@ -1,0 +1,1 @@
+"""`simconsole sweep`."""

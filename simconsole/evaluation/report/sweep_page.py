@@ -1,0 +1,133 @@
+"""The page of a sweep: how it ended, how each metric is distributed, and which drives are the worst cases."""
+
+from collections.abc import Mapping, Sequence
+from html import escape
+from pathlib import Path
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from simconsole.evaluation.manoeuvres.attempt import Line, Panel
+from simconsole.evaluation.metrics.table import Array
+from simconsole.evaluation.report.figures import panels_svg
+from simconsole.evaluation.report.page import html_page
+from simconsole.evaluation.sweep.plan import Plan
+from simconsole.evaluation.sweep.results import metric_names
+from simconsole.evaluation.sweep.task import GOOD, Task, TaskResult
+from simconsole.values.errors import RecordingError
+from simconsole.values.host.files import write_atomically
+
+PLOTS: Final = 12
+"""Metrics that are plotted, those that vary; the table has all of them."""
+LOST: Final = 20
+"""Drives that did not end well that are listed; of the others only the number is told."""
+
+
+class Distribution(NamedTuple):
+    """The values of one metric over a sweep."""
+
+    name: str
+    indices: list[int]  # of the drives that have it
+    values: Array  # in the same order
+
+    @property
+    def largest(self) -> int:
+        """The index of the drive with the largest value."""
+        return self.indices[int(self.values.argmax())]
+
+    @property
+    def smallest(self) -> int:
+        """The index of the drive with the smallest value."""
+        return self.indices[int(self.values.argmin())]
+
+
+def distributions(results: Mapping[int, TaskResult]) -> list[Distribution]:
+    """Return the metrics that vary between the drives of a sweep, by name."""
+    found = []
+    ordered = [results[index] for index in sorted(results)]
+    for name in metric_names(ordered):
+        having = [result for result in ordered if name in result.metrics]
+        values = np.array([result.metrics[name] for result in having])
+        if np.ptp(values) > 0.0:
+            found.append(Distribution(name, [result.index for result in having], values))
+    return found
+
+
+def write_sweep_page(path: Path, plan: Plan, results: Mapping[int, TaskResult], again: str) -> None:
+    """Write the page.
+
+    Args:
+        path: the HTML file.
+        plan: what was driven.
+        results: by index.
+        again: the command that drives one of them again into a bundle, INDEX in the place of its number.
+
+    Raises:
+        RecordingError: the file cannot be written.
+    """
+    found = distributions(results)
+    lost = [results[index] for index in sorted(results) if results[index].outcome not in GOOD]
+    parts = [
+        f"<h1>{escape(plan.title)}</h1>",
+        f'<p class="note">{len(results)} of {len(plan.tasks)} drives; varied: {escape(", ".join(plan.keys)) or "-"}. '
+        f"One of them again, into a bundle: <code>{escape(again)}</code></p>",
+        _outcomes(results),
+    ]
+    if lost:
+        parts += ["<h2>Drives that did not end well</h2>", _lost(plan, lost)]
+    if found:
+        parts += [
+            "<h2>Distributions</h2>",
+            f"<figure>{panels_svg('sweep', tuple(map(_panel, found[:PLOTS])))}</figure>",
+            _table(plan, found),
+        ]
+    try:
+        write_atomically(path, html_page(plan.title, parts))
+    except OSError as error:
+        raise RecordingError(f"{path}: cannot be written: {error.strerror}") from error
+
+
+def _outcomes(results: Mapping[int, TaskResult]) -> str:
+    outcomes = [result.outcome for result in results.values()]
+    tiles = (f"<li><b>{outcomes.count(one)}</b><span>{one}</span></li>" for one in sorted(set(outcomes)))
+    return f'<ul class="tiles">{"".join(tiles)}</ul>'
+
+
+def _lost(plan: Plan, lost: Sequence[TaskResult]) -> str:
+    rows = [
+        f"<tr><td class=n>{one.index}</td><td>{escape(_case(plan.tasks[one.index]))}</td><td>{one.outcome}</td>"
+        f"<td>{escape(one.detail)}</td></tr>"
+        for one in lost[:LOST]
+    ]
+    more = len(lost) - LOST
+    head = "<table><tr><th class=n>drive</th><th>of</th><th>ended</th><th>why</th></tr>"
+    return "\n".join((head, *rows, "</table>", *((f"<p>and {more} more</p>",) if more > 0 else ())))
+
+
+def _panel(one: Distribution) -> Panel:
+    """Return the share of drives that have at most a value."""
+    share = np.arange(1, len(one.values) + 1) / len(one.values)
+    return Panel(one.name, one.name.rpartition(".")[2], "share of drives", (Line("", np.sort(one.values), share),))
+
+
+def _table(plan: Plan, found: Sequence[Distribution]) -> str:
+    heads = "".join(f"<th class=n>{name}</th>" for name in ("least", "drive", "median", "95 %", "most", "drive"))
+    rows = []
+    for one in found:
+        median, high = np.percentile(one.values, (50.0, 95.0))
+        least, most = plan.tasks[one.smallest], plan.tasks[one.largest]
+        rows.append(
+            f"<tr><td>{escape(one.name)}</td><td class=n>{one.values.min():.4g}</td>{_which(least)}"
+            f"<td class=n>{median:.4g}</td><td class=n>{high:.4g}</td><td class=n>{one.values.max():.4g}</td>"
+            f"{_which(most)}</tr>"
+        )
+    return "\n".join((f"<table><tr><th>metric</th>{heads}</tr>", *rows, "</table>"))
+
+
+def _which(task: Task) -> str:
+    return f'<td class=n title="{escape(_case(task), quote=True)}">{task.index}</td>'
+
+
+def _case(task: Task) -> str:
+    """Return what a drive was, as people read it."""
+    return ", ".join((task.source, *(f"{key} {value}" for key, value in task.values.items())))

@@ -1,0 +1,100 @@
+"""Where the drives of a sweep are driven: in processes of this machine, or by the workers of a Dask scheduler."""
+
+import threading
+from collections.abc import Generator, Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+from contextlib import contextmanager
+from typing import Any, Final
+
+import msgspec
+
+from simconsole.evaluation.sweep.lane import Lanes
+from simconsole.evaluation.sweep.task import Task, TaskResult, from_bytes, to_bytes
+from simconsole.values.errors import SimConsoleError
+
+_TRIES: Final = 3
+"""How often Dask may give a drive to another worker because the one that had it has ended."""
+
+
+def drive_here(tasks: Sequence[Task], jobs: int) -> Generator[TaskResult, None, None]:
+    """Drive tasks in `jobs` processes of this machine; yield results as they come.
+
+    The first drive is alone: what has to be compiled is compiled once, before the other processes start.
+    """
+    lanes = Lanes()
+    with ThreadPoolExecutor(jobs) as pool:
+        try:
+            if tasks:
+                yield pool.submit(lanes.drive, tasks[0]).result()
+            waiting: list[Future[TaskResult]] = [pool.submit(lanes.drive, task) for task in tasks[1:]]
+            for future in as_completed(waiting):
+                yield future.result()
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+            lanes.close()
+
+
+def drive_on_dask(tasks: Sequence[Task], scheduler: str) -> Generator[TaskResult, None, None]:
+    """Drive tasks by the workers of a scheduler (tcp://HOST:PORT); yield results as they come.
+
+    A worker drives them in processes of its own, one for each of its threads. Drives of a worker that has ended go to
+    the others. Files that sessions name, traces, scripts and road maps, must lie where this machine has them.
+
+    Raises:
+        SimConsoleError: no such scheduler, or Dask is not installed (extra `dask`).
+    """
+    try:
+        from distributed import as_completed as each_completed
+        from distributed.scheduler import KilledWorker
+    except ImportError as error:
+        raise SimConsoleError(f"sweep: --engine dask: needs the extra `dask`: {error}") from None
+    with _client(scheduler) as client:
+        futures = {client.submit(drive_line, to_bytes(task), pure=False, retries=_TRIES): task for task in tasks}
+        try:
+            for future in each_completed(list(futures), loop=client.loop):  # type: ignore[no-untyped-call]
+                failure = future.exception()
+                if failure is None:
+                    yield msgspec.json.decode(future.result(), type=TaskResult)
+                elif isinstance(failure, KilledWorker):
+                    yield TaskResult(index=futures[future].index, outcome="crashed", detail="its workers have ended")
+                else:
+                    raise failure
+                future.release()
+        finally:
+            client.cancel(list(futures))
+            client.run(close_lanes)
+
+
+@contextmanager
+def _client(scheduler: str) -> Iterator[Any]:
+    from distributed import Client
+
+    try:
+        client = Client(scheduler, set_as_default=False)  # type: ignore[no-untyped-call]
+    except (OSError, ValueError) as error:
+        raise SimConsoleError(f"sweep: --scheduler: value {scheduler}: {error}") from None
+    with client:
+        yield client
+
+
+_lanes: Lanes | None = None
+_lock: Final = threading.Lock()
+
+
+def drive_line(line: bytes) -> bytes:
+    """Drive the task in a line of JSON in a lane of the calling thread, and return its result likewise: for workers."""
+    global _lanes  # of the worker's process, for all its threads
+    with _lock:
+        if _lanes is None:
+            _lanes = Lanes()
+        lanes = _lanes
+    return msgspec.json.encode(lanes.drive(from_bytes(line)))
+
+
+def close_lanes() -> None:
+    """End the processes that `drive_line` has started."""
+    global _lanes
+    with _lock:
+        lanes, _lanes = _lanes, None
+    if lanes is not None:
+        lanes.close()

@@ -1,0 +1,140 @@
+"""A process that drives one task after the other: `python -m simconsole.evaluation.sweep.lane`.
+
+What takes it down, an error in compiled code, the kernel for want of memory, a drive that never ends, loses the drive
+that it was at and nothing else. Tasks and results are lines of JSON on its standard input and output; it ends with
+whoever holds its input.
+"""
+
+import os
+import queue
+import threading
+from contextlib import suppress
+from typing import BinaryIO, Final, NoReturn
+
+import msgspec
+
+from simconsole.evaluation.sweep.task import Outcome, Task, TaskResult, drive_task, from_bytes, to_bytes
+from simconsole.processes.lifetimes import SIGNALS, close_pipe, end_at_once, handle, spawn
+
+_MODULE: Final = "simconsole.evaluation.sweep.lane"
+_ENDS_S: Final = 10.0
+
+
+class Lane:
+    """One such process, started when it is needed. For one thread at a time; `close` may come from another."""
+
+    def __init__(self) -> None:
+        self._process = spawn(["-m", _MODULE], stdout=-1)
+        self._gave_up = False
+
+    def drive(self, task: Task) -> TaskResult | None:
+        """Drive a task there; None if the process has ended meanwhile, or was ended because it took too long."""
+        process = self._process
+        assert process.stdin is not None
+        assert process.stdout is not None
+        timer = threading.Timer(task.timeout_s, self._give_up)
+        timer.daemon = True
+        timer.start()
+        try:
+            process.stdin.write(to_bytes(task) + b"\n")
+            process.stdin.flush()
+            line = process.stdout.readline()
+        except (OSError, ValueError):  # it was gone already, or is closed by another thread
+            return None
+        finally:
+            timer.cancel()
+        return msgspec.json.decode(line, type=TaskResult) if line.endswith(b"\n") else None
+
+    @property
+    def gave_up(self) -> bool:
+        """Whether it was ended because a task took too long."""
+        return self._gave_up
+
+    def _give_up(self) -> None:
+        self._gave_up = True
+        self._process.kill()
+
+    def close(self) -> None:
+        """End it; harmless twice."""
+        self._process.kill()
+        self._process.wait(_ENDS_S)
+        close_pipe(self._process)
+        if self._process.stdout is not None:
+            with suppress(OSError):
+                self._process.stdout.close()
+
+
+class Lanes:
+    """A lane for each thread that asks; a drive that takes one down is tried once more in another."""
+
+    def __init__(self) -> None:
+        self._of_thread = threading.local()
+        self._all: set[Lane] = set()
+        self._lock = threading.Lock()
+        self._closed = False
+
+    def drive(self, task: Task) -> TaskResult:
+        """Drive a task in this thread's lane."""
+        outcome: Outcome = "crashed"
+        for _ in range(2):
+            lane = self._lane()
+            found = lane.drive(task)
+            if found is not None:
+                return found
+            outcome = "timed out" if lane.gave_up else "crashed"
+            self._drop(lane)
+        detail = f"twice, after {task.timeout_s:g} s" if outcome == "timed out" else "twice: the process has ended"
+        return TaskResult(index=task.index, outcome=outcome, detail=detail)
+
+    def close(self) -> None:
+        """End all lanes. Threads that wait for one get no result."""
+        with self._lock:
+            self._closed, lanes = True, tuple(self._all)
+        for lane in lanes:
+            lane.close()
+
+    def _lane(self) -> Lane:
+        lane: Lane | None = getattr(self._of_thread, "lane", None)
+        if lane is None:
+            with self._lock:
+                if self._closed:
+                    raise InterruptedError("the sweep has ended")
+                lane = Lane()
+                self._all.add(lane)
+            self._of_thread.lane = lane
+        return lane
+
+    def _drop(self, lane: Lane) -> None:
+        lane.close()
+        self._of_thread.lane = None
+        with self._lock:
+            self._all.discard(lane)
+
+
+def main() -> NoReturn:
+    """Drive what comes until standard input ends."""
+    answers = os.fdopen(os.dup(1), "wb", buffering=0)
+    os.dup2(2, 1)  # what a drive prints must not come between the answers
+    lines: queue.SimpleQueue[bytes] = queue.SimpleQueue()
+    threading.Thread(target=_listen, args=(lines,), name="parent", daemon=True).start()
+    handle(lambda number, frame: end_at_once(1), SIGNALS)
+    while True:
+        _answer(answers, drive_task(from_bytes(lines.get())))
+
+
+def _listen(lines: "queue.SimpleQueue[bytes]") -> None:
+    """Take tasks from standard input as they come, so that its end is seen in the middle of a drive."""
+    with open(0, "rb", closefd=False) as pipe:
+        for line in pipe:
+            lines.put(line)
+    end_at_once(0)
+
+
+def _answer(answers: BinaryIO, result: TaskResult) -> None:
+    line = msgspec.json.encode(result) + b"\n"
+    while line:
+        line = line[answers.write(line) :]
+
+
+if __name__ == "__main__":
+    main()

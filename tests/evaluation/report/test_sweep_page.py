@@ -1,0 +1,35 @@
+from pathlib import Path
+
+import numpy as np
+
+from simconsole.evaluation.report.sweep_page import distributions, write_sweep_page
+from simconsole.evaluation.sweep.task import TaskResult
+from tests.evaluation.sweep.plans import grip
+
+VALUES = (3.0, 1.0, 8.0, 2.0)
+
+
+def found() -> dict[int, TaskResult]:
+    return {
+        index: TaskResult(index=index, outcome="driven", metrics={"a_m": value, "same_s": 4.0})
+        for index, value in enumerate(VALUES)
+    }
+
+
+def test_of_each_metric_that_varies_the_worst_cases_are_named() -> None:
+    (only,) = distributions(found())
+    assert (only.name, only.largest, only.smallest) == ("a_m", 2, 1)
+    assert np.array_equal(only.values, VALUES)
+
+
+def test_the_page_names_worst_cases_losses_and_how_to_drive_one_again(tmp_path: Path) -> None:
+    plan = grip(tmp_path, 5, title="<grip>")
+    results = found() | {4: TaskResult(index=4, outcome="crashed", detail="twice & gone")}
+    write_sweep_page(tmp_path / "sweep.html", plan, results, "simconsole sweep plan.yaml --drive INDEX")
+    page = (tmp_path / "sweep.html").read_text()
+    assert "&lt;grip&gt;" in page
+    assert "simconsole sweep plan.yaml --drive INDEX" in page
+    assert "twice &amp; gone" in page
+    assert 'title="session, environment.friction 0.6">2</td>' in page
+    assert "<svg" in page
+    assert page == (tmp_path / "sweep.html").read_text()

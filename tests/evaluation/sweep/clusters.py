@@ -1,0 +1,62 @@
+"""A Dask scheduler with workers, each a program of its own as in a cluster."""
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import NamedTuple
+
+from tests.drives.controllers import free_port
+from tests.patience import wait_until
+
+
+class Cluster(NamedTuple):
+    """Its address, and its workers."""
+
+    url: str
+    workers: "list[subprocess.Popen[bytes]]"
+
+
+@contextmanager
+def program(folder: Path, name: str, *words: str) -> "Iterator[subprocess.Popen[bytes]]":
+    with (folder / f"{name}.log").open("wb") as log:
+        process = subprocess.Popen(
+            [sys.executable, "-m", "distributed.cli." + name.partition("-")[0], *words, "--no-dashboard"],
+            stdout=log,
+            stderr=log,
+            cwd=folder,
+        )
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.wait()
+
+
+@contextmanager
+def cluster(folder: Path, workers: int) -> Iterator[Cluster]:
+    """Start a scheduler and so many workers of one thread each."""
+    url = f"tcp://127.0.0.1:{free_port()}"
+    with ExitStack() as stack:
+        stack.enter_context(program(folder, "dask_scheduler", "--host", url))
+        options = (url, "--nthreads", "1", "--no-nanny", "--local-directory", str(folder))
+        begun = [stack.enter_context(program(folder, f"dask_worker-{n}", *options)) for n in range(workers)]
+        for number in range(workers):
+            log = folder / f"dask_worker-{number}.log"
+            wait_until(lambda log=log: b"Registered to" in log.read_bytes(), "a worker")  # type: ignore[misc]
+        yield Cluster(url, begun)
+
+
+def lanes_of(pid: int) -> list[int]:
+    """The processes that drive for a process."""
+    found = []
+    for task in Path(f"/proc/{pid}/task").iterdir():
+        found += [int(child) for child in (task / "children").read_text().split()]
+    return [child for child in found if b"sweep.lane" in Path(f"/proc/{child}/cmdline").read_bytes()]
+
+
+def kill(pid: int) -> None:
+    os.kill(pid, signal.SIGKILL)

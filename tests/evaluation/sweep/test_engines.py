@@ -1,0 +1,48 @@
+import os
+from pathlib import Path
+
+import pytest
+
+from simconsole.evaluation.sweep.engines import drive_here, drive_on_dask
+from simconsole.evaluation.sweep.task import TaskResult, drive_task
+from simconsole.values.errors import SimConsoleError
+from tests.evaluation.sweep.clusters import cluster, kill, lanes_of
+from tests.evaluation.sweep.plans import grip
+from tests.patience import wait_until
+
+
+def by_index(results: list[TaskResult]) -> list[TaskResult]:
+    return sorted(results, key=lambda result: result.index)
+
+
+def test_lanes_of_this_machine_give_what_one_process_gives_though_one_is_killed(tmp_path: Path) -> None:
+    tasks = grip(tmp_path, 8).tasks
+    results = []
+    driven = drive_here(tasks, 2)
+    results.append(next(driven))
+    kill(lanes_of(os.getpid())[0])
+    results += driven
+    assert by_index(results) == [drive_task(task) for task in tasks]
+    wait_until(lambda: not lanes_of(os.getpid()), "the lanes' end")
+
+
+def test_a_sweep_that_is_given_up_leaves_no_process(tmp_path: Path) -> None:
+    driven = drive_here(grip(tmp_path, 8).tasks, 2)
+    next(driven)
+    driven.close()
+    wait_until(lambda: not lanes_of(os.getpid()), "the lanes' end")
+
+
+def test_dasks_workers_give_the_same_though_one_is_killed(tmp_path: Path) -> None:
+    tasks = grip(tmp_path, 8).tasks
+    with cluster(tmp_path, 2) as workers:
+        driven = drive_on_dask(tasks, workers.url)
+        results = [next(driven)]
+        workers.workers[0].kill()
+        results += driven
+    assert by_index(results) == [drive_task(task) for task in tasks]
+
+
+def test_a_scheduler_that_is_not_there_is_one_line() -> None:
+    with pytest.raises(SimConsoleError, match="--scheduler: value nonsense:"):
+        list(drive_on_dask((), "nonsense"))
