@@ -122,12 +122,15 @@ def _started(profile: SumoProfile, options: Sequence[str]) -> Engine:
 def _connected(profile: SumoProfile, host: str, port: int, process: "subprocess.Popen[bytes] | None") -> Engine:
     import traci
 
+    # libsumo, once imported, puts its own errors into traci.exceptions; traci's modules go on raising theirs.
+    names = (traci.exceptions, traci.main, traci.connection)
+    errors = (*{error for one in names for error in (one.TraCIException, one.FatalTraCIError)}, OSError)
     deadline_s = time.monotonic() + (CONNECT_S if process is not None else profile.timeout_s)
     while True:
         try:
             connection: Any = traci.connect(port, numRetries=0, host=host, proc=process)
             break
-        except (traci.exceptions.TraCIException, traci.exceptions.FatalTraCIError, OSError):
+        except errors:
             if process is not None and process.poll() is not None:
                 said = b"" if process.stderr is None else process.stderr.read()
                 _end(process)
@@ -138,7 +141,6 @@ def _connected(profile: SumoProfile, host: str, port: int, process: "subprocess.
             time.sleep(_LOOK_S)
     # A SUMO that hangs is one that has not answered for so long; traci has no bound of its own.
     connection._socket.settimeout(profile.timeout_s)
-    errors = (traci.exceptions.TraCIException, traci.exceptions.FatalTraCIError, OSError)
 
     def close() -> None:
         with contextlib.suppress(*errors, AttributeError):
