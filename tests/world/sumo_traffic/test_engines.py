@@ -34,7 +34,7 @@ def test_address_where_nobody_listens_is_told() -> None:
 def test_options_that_sumo_refuses_are_told_and_leave_room_for_the_next() -> None:
     for backend in ("libsumo", "traci"):
         with pytest.raises(ProfileError, match=r"environment\.traffic\.sumo: SUMO: .*: a simulation that starts"):
-            open_engine(SumoProfile(backend=backend), ["--no-such-option"])  # type: ignore[arg-type]
+            open_engine(SumoProfile(backend=backend), ["--no-such-option"])
     assert engines._running == []
 
 
