@@ -28,7 +28,7 @@ UNITLESS = {
     *("red_light", "wrong_way", "off_road", "speeding", "failing_to_yield", "collision"),
     *("first_touch", "touches"),
     # places in a map's tuples, and a time in ticks since the start
-    *("lane", "edge", "tick"),
+    *("lane", "edge", "tick", "approach", "signal_tick", "traffic_lost"),
     # members of an enumeration
     "signal_state",
     *("kind", "mode", "reason", "refusal", "notice", "gear", "direction", "takeover_stage", "commander", "state"),

@@ -34,6 +34,7 @@ def doctor(options: Namespace) -> Outcome:
         "display": _yes(bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")), "no window; PNG works"),
         "shared memory": _yes(Path("/dev/shm").is_dir(), "a temporary folder takes its place"),
         "real-time scheduling": _yes(_may_use_fifo(), "the tick loop runs without it, later under load"),
+        "SUMO": _sumo(),
         "local programs": _LOCAL_PROGRAMS,
     }
     return Outcome(0, found, table(list(found.items())))
@@ -44,6 +45,15 @@ def _version(name: str) -> str:
         return version(name)
     except PackageNotFoundError:
         return "missing"
+
+
+def _sumo() -> str:
+    from simconsole.profiles.traffic import SumoProfile
+    from simconsole.world.sumo_traffic.engines import missing
+
+    lacking = [missing(SumoProfile(backend="libsumo")), missing(SumoProfile(backend="traci"))]
+    told = [one for one in lacking if one is not None]
+    return f"no: environment.traffic.sumo needs {'; '.join(told)}" if told else f"yes: {_version('libsumo')}"
 
 
 def _yes(has: bool, otherwise: str) -> str:

@@ -28,8 +28,11 @@ STATE: Final = "state"
 ACTS: Final = "acts"
 """The stream of the operator's acts and notes, JSON."""
 ROAD_USERS: Final = "road_users"
-PLANS: Final = "plans"
 """The stream of the road users, a table of float64."""
+SIGNALS: Final = "signals"
+"""The stream of the signals that another simulator runs, JSON: those that have changed."""
+PLANS: Final = "plans"
+"""The stream of what the autopilot plans."""
 _HEAD: Final = Struct("<II")
 
 

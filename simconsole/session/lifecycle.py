@@ -20,7 +20,16 @@ from simconsole.recording.bundles.bundle import SESSION_FILE, BundleWriter, add_
 from simconsole.recording.bundles.manifest import Manifest
 from simconsole.recording.bundles.provenance import NOTHING_GIVEN, Given
 from simconsole.recording.bundles.replay_bundle import sources_sha256
-from simconsole.recording.log_header import ACTS, PLANS, ROAD_USERS, LogHeader, Stream, message_stream, vector_stream
+from simconsole.recording.log_header import (
+    ACTS,
+    PLANS,
+    ROAD_USERS,
+    SIGNALS,
+    LogHeader,
+    Stream,
+    message_stream,
+    vector_stream,
+)
 from simconsole.recording.own_signals import stream_of
 from simconsole.session.opening import Opened, open_headless, open_realtime
 from simconsole.session.paced import keeps_plans
@@ -167,8 +176,10 @@ def _list_what_workers_wrote(folder: Path, manifest: Manifest) -> None:
 def _bundle(
     resolved: ResolvedSession, console: Console, folder: Path, given: Given, signals: OwnSignals | None
 ) -> BundleWriter:
-    traffic = resolved.session.environment.traffic is not None
-    road_users = (message_stream(ROAD_USERS, ROAD_USERS_ENCODING),) if traffic else ()
+    traffic = resolved.session.environment.traffic
+    road_users = () if traffic is None else (message_stream(ROAD_USERS, ROAD_USERS_ENCODING),)
+    if traffic is not None and traffic.sumo is not None:
+        road_users = (*road_users, message_stream(SIGNALS, "json"))
     plans = (message_stream(PLANS, PLANS_ENCODING),) if keeps_plans(resolved.session) else ()
     own = () if signals is None else (stream_of(signals),)
     return new_bundle(resolved, console, folder, given, (message_stream(ACTS), *road_users, *plans, *own))

@@ -105,7 +105,7 @@ def open_headless(
     counters: Callable[[], dict[str, Any]] = dict
     of_can: Callable[[], dict[str, Any]] = dict
     take_acts: Callable[[], list[bytes]] = list
-    traffic, unpushable = open_traffic(resolved, console), CollisionEnd(console.platform)
+    traffic, unpushable = _open_traffic(resolved, console, stack), CollisionEnd(console.platform)
     parts = OwnParts(own, resolved.session.mode.control_period_ticks)
     if parts.controller is not None:
         link = _lockstep_link(parts.controller, resolved.session, interrupt)
@@ -181,7 +181,7 @@ def open_realtime(
     opening = stack.enter_context(ExitStack())
     opening.enter_context(undone(lambda: remove_run_folder(folder)))
     memory = make_memory(folder, console)
-    traffic, unpushable = open_traffic(resolved, console), CollisionEnd(console.platform)
+    traffic, unpushable = _open_traffic(resolved, console, stack), CollisionEnd(console.platform)
     plans = share_plans(resolved.session, folder)
     recorder = LogRecorder(log, memory.acts.take, traffic, plans)
     if traffic is not None:
@@ -226,6 +226,13 @@ def open_realtime(
         identities=seating.identities,
         left=lambda: memory.keys.ended() or unpushable.ended(),
     )
+
+
+def _open_traffic(resolved: ResolvedSession, console: Console, stack: ExitStack) -> TrafficSource | None:
+    traffic = open_traffic(resolved, console)
+    if traffic is not None:
+        stack.callback(traffic.close)
+    return traffic
 
 
 def _outputs_of(traffic: TrafficSource | None) -> tuple[Output, ...]:
@@ -322,7 +329,7 @@ def _open_lockstep(
         around=Surroundings(
             route=route_points(resolved.world),
             shown_map=shown_map(resolved.world),
-            signals=road_signals(resolved.world, console.tick_hz),
+            signals=(None if traffic is None else traffic.signals()) or road_signals(resolved.world, console.tick_hz),
             road_users=None if traffic is None else traffic.newest,
             view=view,
             robot=robot_at_work(resolved.vehicle, resolved.world),

@@ -187,6 +187,12 @@ def _files_beside(session: SessionProfile, path: Path) -> SessionProfile:
         beside = _beside(path, "outputs.bridge.messages", bridge.messages, bridge.messages)
         changed = {**msgspec.to_builtins(bridge), "messages": str(beside)}
         session = override(session, outputs={"bridge": changed})
+    traffic = session.environment.traffic
+    if traffic is not None and traffic.sumo is not None and traffic.sumo.config is not None:
+        beside = _beside(path, "environment.traffic.sumo.config", traffic.sumo.config, traffic.sumo.config)
+        sumo = msgspec.structs.replace(traffic.sumo, config=str(beside))
+        changed = msgspec.to_builtins(msgspec.structs.replace(traffic, sumo=sumo))
+        session = override(session, environment={"traffic": changed})
     hud = session.outputs.hud
     if hud is not None:
         session = override(session, outputs={"hud": _display_files_beside(hud, path)})

@@ -1,29 +1,74 @@
 """Traffic as a source: stepped every fixed number of ticks, its result recorded as an input and shown to everybody."""
 
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple, Protocol, runtime_checkable
 
+from simconsole.profiles.files.world_files import read_map
+from simconsole.profiles.traffic import TrafficProfile
 from simconsole.profiles.world import RoadsProfile
-from simconsole.recording.log_header import ROAD_USERS
+from simconsole.recording.log_header import ROAD_USERS, SIGNALS
 from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import ProfileError
 from simconsole.values.host.jit import compiled
 from simconsole.values.latency import Hop
 from simconsole.values.platform import Platform
-from simconsole.values.signals import AheadInput, ImpactInput, VehicleState
+from simconsole.values.signals import FAR, AheadInput, ImpactInput, VehicleState
 from simconsole.values.state_vector import Snapshot
 from simconsole.values.trigonometry import direction
 from simconsole.world.kinds.worlds import open_map, open_world
-from simconsole.world.roads.road_world import roads_of
+from simconsole.world.roads.road_map import Array
+from simconsole.world.roads.road_world import Roads, roads_of
 from simconsole.world.route import Route
+from simconsole.world.rules.approaches import Ahead, ahead_of_lanes
 from simconsole.world.rules.owing import Owing
+from simconsole.world.rules.road_rules import APPROACH, RoadRules
+from simconsole.world.rules.running_signals import RunningSignals
 from simconsole.world.traffic.crashes import NO_CRASH, Crashes
 from simconsole.world.traffic.leader import Leaders
 from simconsole.world.traffic.road_users import Box, RoadUsersAt, to_bytes
 from simconsole.world.traffic.traffic import Traffic
 
 ShowRoadUsers = Callable[[RoadUsersAt], None]
+
+
+class Stepped(Protocol):
+    """Whoever moves all road users but the ego, in steps: built-in traffic, or another simulator."""
+
+    def road_users(self) -> Array:
+        """Return where everybody is, float64 [users, FIELDS] as `RoadUser`."""
+
+    def step(self, ego: Box | None) -> Array:
+        """Move everybody on by a period, with the ego where it is, and return where they are then."""
+
+    def push(self, number: float, change_mps: float) -> None:
+        """Change the speed of road user `number`, who has collided and from now on only comes to rest."""
+
+
+@runtime_checkable
+class Closing(Protocol):
+    """Traffic that another simulator moves."""
+
+    ego_error_m: float  # by which the ego was elsewhere than it was put, at most
+
+    def close(self) -> None:
+        """End it, or this drive's part in it."""
+
+
+class OtherSignals(NamedTuple):
+    """The signals of a map that another simulator runs, as inputs of the tick."""
+
+    running: RunningSignals
+    ahead: Sequence[Ahead | None]  # what lies ahead of each lane of the map
+    rules: RoadRules
+
+    def seen(self, lane: int) -> tuple[float, float, float]:
+        """Return the last fields of `AheadInput` for a vehicle on a lane of the map, -1: on none."""
+        ahead = self.ahead[lane] if lane >= 0 else None
+        if ahead is None:
+            return -1.0, 0.0, FAR
+        shown = self.running.of(ahead.approach)
+        return float(self.rules.lanes[lane, APPROACH]) + 1.0, float(shown.state), shown.change_tick
 
 
 class TrafficSource:
@@ -36,20 +81,24 @@ class TrafficSource:
 
     def __init__(
         self,
-        traffic: Traffic,
+        traffic: Stepped,
         platform: Platform,
         period_ticks: int,
         route: Route | None = None,
         owing: Owing | None = None,
+        signals: OtherSignals | None = None,
     ) -> None:
-        """Take what the vehicle follows as `route`; without one it goes straight on, and `owing` tells nothing."""
-        self._traffic = traffic
+        """Take what the vehicle follows as `route`; without one it goes straight on, and `owing` tells nothing.
+
+        `signals` are those that the traffic brings with it; None: they run their own programs.
+        """
+        self._traffic, self._signals = traffic, signals
         self._leaders, self._crashes = Leaders(route, compiled), Crashes(platform.solid, compiled)
         self._platform = platform
         self._period_ticks = period_ticks
         self._owing = owing
         self._newest = RoadUsersAt(0, traffic.road_users())
-        self._ahead = self._look(ego_box(platform.initial_vehicle, platform), 0)
+        self._ahead = self._look(ego_box(platform.initial_vehicle, platform), 0, -1)
         self._fresh = True
         self._crash = NO_CRASH
         self._shown: list[ShowRoadUsers] = []
@@ -72,7 +121,7 @@ class TrafficSource:
         ego = ego_box(vehicle, self._platform)
         self._newest = RoadUsersAt(snapshot.tick, self._traffic.step(ego))
         self._fresh = True
-        self._ahead = self._look(ego, snapshot.tick)
+        self._ahead = self._look(ego, snapshot.tick, int(snapshot.situation.lane))
         self._crash = self._crashes.step(vehicle, ego, self._newest.users)
         self.collisions += len(self._crash.new)
         for number, change_mps in self._crash.pushed:
@@ -84,21 +133,43 @@ class TrafficSource:
         """Return whom the vehicle follows and lets pass, as of the last step."""
         return self._ahead
 
-    def _look(self, ego: Box, tick: int) -> AheadInput:
+    def _look(self, ego: Box, tick: int, lane: int) -> AheadInput:
         found = self._leaders.find(ego, self._newest.users)
-        if self._owing is None:
+        if self._owing is not None:
+            owed = self._owing.owed(ego, self._newest.users, tick)
+            found = AheadInput(found.lead_gap_m, found.lead_speed_mps, owed.yield_m, owed.yield_s)
+        if self.lost() is not None:
+            return found._replace(traffic_lost=1.0)
+        if self._signals is None:
             return found
-        owed = self._owing.owed(ego, self._newest.users, tick)
-        return AheadInput(found.lead_gap_m, found.lead_speed_mps, owed.yield_m, owed.yield_s)
+        approach, state, change_tick = self._signals.seen(lane)
+        return found._replace(approach=approach, signal_state=state, signal_tick=change_tick)
 
     def unseen(self, tick: int) -> int:
         """Return how many ticks, from `tick` on, do not end a period."""
         return -tick % self._period_ticks
 
     def take_messages(self) -> list[tuple[str, bytes]]:
-        """Return the newest road users, if nobody has taken them yet."""
-        fresh, self._fresh = self._fresh, False
-        return [(ROAD_USERS, to_bytes(self._newest.users))] if fresh else []
+        """Return the newest road users and the signals that have changed, if nobody has taken them yet."""
+        if not self._fresh:
+            return []
+        self._fresh = False
+        changed = None if self._signals is None else self._signals.running.changed()
+        messages = [(ROAD_USERS, to_bytes(self._newest.users))]
+        return messages if changed is None else [*messages, (SIGNALS, changed)]
+
+    def signals(self) -> RunningSignals | None:
+        """Return the signals that the traffic brings with it; None: they run their own programs."""
+        return None if self._signals is None else self._signals.running
+
+    def lost(self) -> str | None:
+        """Return why there is no traffic any more, None as long as there is."""
+        return getattr(self._traffic, "lost", None)
+
+    def close(self) -> None:
+        """End another simulator that moves the road users."""
+        if isinstance(self._traffic, Closing):
+            self._traffic.close()
 
     def take_impact(self) -> ImpactInput:
         """Return what a collision of the last step has done to the vehicle, once."""
@@ -107,7 +178,9 @@ class TrafficSource:
 
     def summary(self) -> dict[str, Any]:
         """Return what the drive's summary says of traffic."""
-        return {"traffic": {"road_users": len(self._newest.users), "collisions": self.collisions}}
+        lost = {} if self.lost() is None else {"lost": self.lost()}
+        error = {"ego_error_m": self._traffic.ego_error_m} if isinstance(self._traffic, Closing) else {}
+        return {"traffic": {"road_users": len(self._newest.users), "collisions": self.collisions, **error, **lost}}
 
 
 def open_traffic(resolved: ResolvedSession, console: Console) -> TrafficSource | None:
@@ -128,6 +201,10 @@ def open_traffic(resolved: ResolvedSession, console: Console) -> TrafficSource |
         )
     platform, world = console.platform, open_world(resolved.world)
     route, roads = world.route, roads_of(world)
+    assert roads is not None, "a road map has roads"
+    period_ticks = profile.period_ms * console.tick_hz // 1000
+    if profile.sumo is not None:
+        return _of_sumo(resolved, profile, console, route, roads, period_ticks)
     traffic = Traffic(
         open_map(resolved.world),
         profile,
@@ -136,8 +213,37 @@ def open_traffic(resolved: ResolvedSession, console: Console) -> TrafficSource |
         ego=ego_box(platform.initial_vehicle, platform),
         ground=world.ground,
     )
-    owing = None if roads is None else Owing(roads.road_map, roads.legs, route, console.tick_hz)
-    return TrafficSource(traffic, platform, profile.period_ms * console.tick_hz // 1000, route, owing)
+    owing = Owing(roads.road_map, roads.legs, route, console.tick_hz)
+    return TrafficSource(traffic, platform, period_ticks, route, owing)
+
+
+def _of_sumo(
+    resolved: ResolvedSession,
+    profile: TrafficProfile,
+    console: Console,
+    route: Route,
+    roads: Roads,
+    period_ticks: int,
+) -> TrafficSource:
+    """Return SUMO's traffic; raises ProfileError as open_traffic, and where SUMO is missing or refuses."""
+    from simconsole.world.sumo_traffic.sumo_traffic import SumoTraffic, Surroundings
+
+    assert isinstance(resolved.world, RoadsProfile)
+    assert console.roads is not None  # such a world has rules
+    platform, tick_hz = console.platform, console.tick_hz
+    around = Surroundings(
+        road_map=roads.road_map,
+        net=read_map(resolved.world.map),
+        legs=roads.legs,
+        tick_hz=tick_hz,
+        ego=ego_box(platform.initial_vehicle, platform),
+        duration_s=resolved.session.scenario.duration_s,
+        ground=open_world(resolved.world).ground,
+    )
+    traffic = SumoTraffic(profile, around)
+    owing = Owing(roads.road_map, roads.legs, route, tick_hz, traffic.signals.state)
+    signals = OtherSignals(traffic.signals, ahead_of_lanes(roads.road_map, roads.legs), console.roads)
+    return TrafficSource(traffic, platform, period_ticks, route, owing, signals)
 
 
 def ego_box(vehicle: VehicleState, platform: Platform) -> Box:

@@ -72,6 +72,7 @@ _NOTICES: Final[dict[float, str]] = {
     Notice.SPEEDING: "faster than the speed limit",
     Notice.FAILING_TO_YIELD: "failed to yield",
     Notice.COLLISION: "collision",
+    Notice.TRAFFIC_LOST: "traffic has failed: the road is empty",
 }
 
 EASED_BELOW: Final = 0.995

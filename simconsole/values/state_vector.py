@@ -73,6 +73,7 @@ PLATFORM_AT: Final = LAYOUT.obstacle.stop
 _RECORDING_FAILED: Final = int(Event.RECORDING_FAILED)
 _NOTICE_AT: Final = LAYOUT.arbitration.at("notice")
 _MODE_AT: Final = LAYOUT.arbitration.at("mode")
+_TRAFFIC_LOST_AT: Final = LAYOUT.ahead.at("traffic_lost")
 _RULES_AT: Final = LAYOUT.rules.start
 _RULES: Final = (
     Notice.COLLISION,
@@ -178,11 +179,13 @@ class Snapshot(NamedTuple):
     def notice(self) -> float:
         """What people are told (`Notice`).
 
-        A failed recording first, then the arbiter's, a broken rule of the road, and a missing engagement.
+        A failed recording first, then the arbiter's, a broken rule of the road, failed traffic, a missing engagement.
         """
         if self.recording_failed:
             return float(Notice.RECORDING_FAILED)
         notice = float(self.vector[_NOTICE_AT]) or self.broken_rule
+        if not notice and self.vector[_TRAFFIC_LOST_AT]:
+            return float(Notice.TRAFFIC_LOST)
         if not notice and float(self.vector[_MODE_AT]) == Mode.PARKED and self._is_commanded:
             return float(Notice.NOT_ENGAGED)
         return notice

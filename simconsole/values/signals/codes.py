@@ -83,6 +83,7 @@ class Notice(IntEnum):
     SPEEDING = 10
     FAILING_TO_YIELD = 11
     COLLISION = 12
+    TRAFFIC_LOST = 13  # the simulator that moved the others has failed
 
 
 class SignalState(IntEnum):

@@ -7,12 +7,19 @@ FAR: Final = 1e9
 
 
 class AheadInput(NamedTuple):
-    """The road user ahead as traffic's last step found them: an input, for nobody else on the road is in the state."""
+    """The road ahead as traffic's last step found it: an input, for nobody else on the road is in the state.
+
+    Where another simulator runs the signals, they are inputs likewise: -1 as `approach` says that it shows none ahead.
+    """
 
     lead_gap_m: float  # from the vehicle's front, along its way; FAR: nobody
     lead_speed_mps: float  # along the vehicle's way
     yield_m: float  # from the vehicle's front to the line before which it lets others pass; FAR: nobody
     yield_s: float  # until who goes first is in its way; FAR: nobody would be hindered
+    approach: float = 0.0  # to which of the map's stop lines the rest speaks, from 1; 0: signals run their own programs
+    signal_state: float = 0.0  # `SignalState` that another simulator shows there
+    signal_tick: float = FAR  # when it changes; FAR: never, or nobody knows
+    traffic_lost: float = 0.0  # 1: another simulator has failed, and the road is empty since
 
 
 NO_AHEAD: Final = AheadInput(lead_gap_m=FAR, lead_speed_mps=0.0, yield_m=FAR, yield_s=FAR)

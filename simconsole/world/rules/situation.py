@@ -43,6 +43,18 @@ class Lead(NamedTuple):
     yield_s: float
 
 
+class Foreign(NamedTuple):
+    """What another simulator's signal shows."""
+
+    approach: float  # row of the table of approaches, from 1; 0: signals run their own programs; -1: none is ahead
+    state: float
+    tick: float  # when it changes
+
+
+OWN: Final = Foreign(approach=0.0, state=0.0, tick=FAR)
+"""Signals that run their own programs."""
+
+
 @kernel
 def time_to_collision(ahead: AheadInput, speed_mps: float) -> float:
     """Return the time in s until the gap to the road user ahead is gone, FAR while it does not close."""
@@ -78,7 +90,8 @@ def look_around(previous: Row, row: Row, rules: RoadRules, tick_s: float) -> Non
         yield_m=ahead.yield_m,
         yield_s=ahead.yield_s,
     )
-    situation = situation_at(found, before.tick + 1.0, rules, lead, tick_s)
+    foreign = Foreign(approach=ahead.approach, state=ahead.signal_state, tick=ahead.signal_tick)
+    situation = situation_at(found, before.tick + 1.0, rules, lead, foreign, tick_s)
     place = place_of(found, heading, vehicle, rules)
     write(row, LAYOUT.situation, situation)
     touched = read(row, LAYOUT.impact).first_touch + read(row, LAYOUT.obstacle).touches
@@ -86,8 +99,11 @@ def look_around(previous: Row, row: Row, rules: RoadRules, tick_s: float) -> Non
 
 
 @kernel
-def situation_at(found: Found, tick: float, rules: RoadRules, lead: Lead, tick_s: float) -> Situation:
-    """Return the situation of a vehicle on the segment that was found for it."""
+def situation_at(found: Found, tick: float, rules: RoadRules, lead: Lead, foreign: Foreign, tick_s: float) -> Situation:
+    """Return the situation of a vehicle on the segment that was found for it.
+
+    A signal of another simulator's is unknown from a change of lanes until its next step.
+    """
     lane, edge, lane_s, lateral, limit = -1.0, -1.0, 0.0, 0.0, _FAR
     state, distance, change = _NO_SIGNAL, _FAR, _FAR
     if found.segment >= 0.0:
@@ -99,13 +115,18 @@ def situation_at(found: Found, tick: float, rules: RoadRules, lead: Lead, tick_s
         approach = int(rules.lanes[place, APPROACH])
         if approach >= 0:
             distance = rules.lanes[place, LENGTH] - lane_s + rules.lanes[place, BEYOND] - rules.front_m[0]
-            signal = rules.approaches[approach, SIGNAL]
-            now = phase_now(rules.timetable, signal, tick)
-            first = rules.timetable.signals[int(signal), 0]
-            shown = int(rules.approaches[approach, SHOWN] + now.phase - first)
-            state = rules.shown[shown, 0]
-            if rules.shown[shown, 1] < _FAR:
-                change = (now.left_ticks + rules.shown[shown, 1]) * tick_s
+            if foreign.approach == 0.0:
+                signal = rules.approaches[approach, SIGNAL]
+                now = phase_now(rules.timetable, signal, tick)
+                first = rules.timetable.signals[int(signal), 0]
+                shown = int(rules.approaches[approach, SHOWN] + now.phase - first)
+                state = rules.shown[shown, 0]
+                if rules.shown[shown, 1] < _FAR:
+                    change = (now.left_ticks + rules.shown[shown, 1]) * tick_s
+            elif foreign.approach == approach + 1.0:
+                state = foreign.state
+                if foreign.tick < _FAR:
+                    change = max(foreign.tick - tick, 0.0) * tick_s
     return Situation(
         tick=tick,
         lane=lane,

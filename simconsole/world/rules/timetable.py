@@ -68,7 +68,7 @@ class Signals:
 
     def state(self, signal: int, link: int, tick: int) -> SignalState:
         """Return what a link of a signal shows."""
-        return _state(self.letters(signal, tick), link)
+        return state_of(self.letters(signal, tick), link)
 
     def link(self, signal: int, link: int, tick: int) -> LinkState:
         """Return what a link of a signal shows, what it will show, and when."""
@@ -98,7 +98,7 @@ def durations_ticks(program: Program, tick_hz: int) -> list[int]:
 
 def link_states(program: Program, links: Sequence[int]) -> list[SignalState]:
     """Return what these links together show in each phase: who follows one of them obeys the most permissive."""
-    return [max((_state(phase.state, link) for link in links), key=PERMISSIVENESS.index) for phase in program.phases]
+    return [max((state_of(phase.state, link) for link in links), key=PERMISSIVENESS.index) for phase in program.phases]
 
 
 PERMISSIVENESS: Final = (
@@ -145,5 +145,6 @@ def phase_now(timetable: Timetable, signal: float, tick: float) -> PhaseNow:
     return PhaseNow(float(phase), timetable.ends_ticks[phase] - at)
 
 
-def _state(letters: str, link: int) -> SignalState:
+def state_of(letters: str, link: int) -> SignalState:
+    """Return what a link shows by SUMO's letters."""
     return _STATES.get(letters[link], SignalState.UNAVAILABLE) if 0 <= link < len(letters) else SignalState.UNAVAILABLE

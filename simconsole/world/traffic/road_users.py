@@ -52,7 +52,7 @@ class RoadUsersAt(NamedTuple):
     users: Array
 
 
-CAPACITY: Final = 128
+CAPACITY: Final = 256
 """Road users that a record in shared memory has room for."""
 FIELDS: Final = len(RoadUser._fields)
 RECORD_WIDTH: Final = 1 + CAPACITY * FIELDS

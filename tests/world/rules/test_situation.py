@@ -18,7 +18,7 @@ from simconsole.world.roads.lane_index import Found
 from simconsole.world.roads.road_map import RoadMap
 from simconsole.world.roads.road_route import route_over
 from simconsole.world.rules.road_rules import RoadRules, road_rules
-from simconsole.world.rules.situation import Lead, look_around, place_of, situation_at, time_to_collision
+from simconsole.world.rules.situation import OWN, Lead, look_around, place_of, situation_at, time_to_collision
 from simconsole.world.rules.timetable import Signals
 from tests.world.nets import CITY, generated_map, straight_map
 
@@ -121,10 +121,12 @@ def test_against_the_lanes_is_the_wrong_way() -> None:
 def test_kernels_alone_agree() -> None:
     rules = road_rules(straight_map(), (), HZ, FRONT_M)
     lead = Lead(gap_m=20.0, speed_mps=5.0, contact_s=4.0, yield_m=12.0, yield_s=3.0)
-    assert situation_at(Found(0.0, 1.0, 0.2), 7.0, rules, lead, 0.02)[-2:] == (12.0, 3.0)
+    assert situation_at(Found(0.0, 1.0, 0.2), 7.0, rules, lead, OWN, 0.02)[-2:] == (12.0, 3.0)
     nowhere = Found(-1.0, 0.0, 0.0)
-    assert situation_at(nowhere, 7.0, rules, lead, 0.02) == compiled(situation_at)(nowhere, 7.0, rules, lead, 0.02)
-    assert isinstance(situation_at(Found(0.0, 1.0, 0.2), 7.0, rules, lead, 0.02), Situation)
+    assert situation_at(nowhere, 7.0, rules, lead, OWN, 0.02) == compiled(situation_at)(
+        nowhere, 7.0, rules, lead, OWN, 0.02
+    )
+    assert isinstance(situation_at(Found(0.0, 1.0, 0.2), 7.0, rules, lead, OWN, 0.02), Situation)
     assert place_of(Found(0.0, 1.0, 0.2), direction(0.3), STANDING, rules).along == pytest.approx(math.cos(0.3))
 
 

@@ -1,0 +1,242 @@
+"""SUMO's traffic round the console's vehicle, in the place of built-in traffic: the same step, the same table.
+
+The vehicle is one of SUMO's (EGO), which is told before every step where it is: left alone for one, SUMO would drive it
+off and take it from the road at the end of its route (eclipse-sumo/sumo issues 3993, 2401).
+"""
+
+import math
+import tempfile
+from collections.abc import Mapping
+from contextlib import ExitStack, suppress
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+from simconsole.profiles.traffic import SumoProfile, TrafficProfile
+from simconsole.values.errors import ProfileError
+from simconsole.values.height_field import HeightField, spline_at
+from simconsole.world.roads.lane_graph import Leg
+from simconsole.world.roads.road_map import ROAD, Array, RoadMap
+from simconsole.world.rules.running_signals import RunningSignals
+from simconsole.world.sumo_traffic.demand import demand
+from simconsole.world.sumo_traffic.engines import KEY, open_engine, said_by
+from simconsole.world.sumo_traffic.places import bumper_of
+from simconsole.world.sumo_traffic.subscriptions import (
+    OF_PEOPLE,
+    OF_VEHICLES,
+    PERSON_FIELDS,
+    VEHICLE_FIELDS,
+    Found,
+    Numbers,
+    SignalReader,
+    position_of,
+    road_users,
+)
+from simconsole.world.traffic.road_users import NOBODY, Box
+
+EGO: Final = "simconsole.ego"
+"""The console's vehicle in SUMO: its name, that of its type, of its route, and of the point round which people are."""
+CLEAR_M: Final = 30.0
+"""Who is as near as this to where the vehicle starts is taken off the road: SUMO's vehicles need room to stop."""
+STOPPING_MPS2: Final = 6.0
+LONG_M: Final = 100_000.0
+"""So long the vehicle's route is, where the world's route is a loop."""
+_EXACTLY: Final = 2  # keepRoute of moveToXY: at this place, on a lane or not
+_BY_THE_DRIVE: Final = 0  # speed mode: SUMO checks nothing
+_HORIZON_S: Final = 3600.0
+_MOST_S: Final = 7200.0
+
+
+class Surroundings(NamedTuple):
+    """What of the world and the drive SUMO's traffic has to do with."""
+
+    road_map: RoadMap
+    net: bytes  # the file that the map was read from
+    legs: tuple[Leg, ...]  # of the world's route
+    tick_hz: int
+    ego: Box  # at the start
+    duration_s: float | None
+    ground: HeightField | None = None
+
+
+class SumoTraffic:
+    """All road users but the ego, as SUMO moves them. Equal profiles and egos give equal bits, of one SUMO version."""
+
+    def __init__(self, profile: TrafficProfile, around: Surroundings) -> None:
+        """Start SUMO, let it warm up and put the vehicle on the road.
+
+        Raises:
+            ProfileError: SUMO is missing, refuses what it shall do, or its network is not the world's map.
+        """
+        assert profile.sumo is not None
+        self._profile, self._around = profile.sumo, around
+        self.period_s = 0.001 * profile.period_ms
+        self.signals = RunningSignals(around.road_map, around.tick_hz)
+        self.lost: str | None = None
+        self.ego_error_m = 0.0
+        self._numbers, self._users = Numbers(), NOBODY
+        self._crashed: dict[str, float] = {}
+        with ExitStack() as stack:
+            folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="simconsole-sumo-")))
+            engine = open_engine(self._profile, self._options(profile, folder))
+            stack.callback(engine.close)
+            self._sumo, self._errors, self.process = engine.sumo, engine.errors, engine.process
+            try:
+                self._begin(around.ego)
+            except self._errors as error:
+                reason = said_by(engine.process) or ascii(str(error))[1:-1][:200]
+                raise ProfileError(f"{KEY}: SUMO: {reason}: a simulation that starts") from None
+            self._stack = stack.pop_all()
+
+    def road_users(self) -> Array:
+        """Return where everybody is, float64 [users, FIELDS] as `RoadUser`."""
+        return self._users
+
+    def step(self, ego: Box | None) -> Array:
+        """Put the ego where it is, let SUMO step, and return who is where then; nobody once SUMO has failed."""
+        if self.lost is None:
+            try:
+                self._step(self._around.ego if ego is None else ego)
+            except self._errors as error:
+                self.lost = ascii(str(error) or type(error).__name__)[1:-1][:200]
+                self._users = NOBODY
+        return self._users
+
+    def push(self, number: float, change_mps: float) -> None:
+        """Change the speed of road user `number`, who has collided and from now on only comes to rest."""
+        walks, name = self._numbers.name(number)
+        with suppress(*self._errors):
+            if walks:
+                self._sumo.person.setSpeed(name, 0.0)
+                return
+            if name not in self._crashed:
+                self._sumo.vehicle.setSpeedMode(name, _BY_THE_DRIVE)
+                self._sumo.vehicle.setLaneChangeMode(name, 0)
+            speed_mps = self._crashed.get(name, self._sumo.vehicle.getSpeed(name)) + change_mps
+            self._crashed[name] = max(0.0, speed_mps)
+
+    def close(self) -> None:
+        """Take the ego off the road, and end SUMO or this client's part in it."""
+        if self.lost is None:
+            with suppress(*self._errors):
+                # First: a subscription of somebody who is gone makes the next step fail.
+                self._sumo.vehicle.unsubscribeContext(EGO, OF_VEHICLES, self._profile.radius_m)
+                self._sumo.poi.unsubscribeContext(EGO, OF_PEOPLE, self._profile.radius_m)
+                self._sumo.poi.remove(EGO)
+                self._sumo.vehicle.remove(EGO)
+        elif self.process is not None:
+            self.process.kill()  # it answers no more
+        self._stack.close()
+
+    def _begin(self, ego: Box) -> None:
+        sumo = self._sumo
+        if {edge.id for edge in self._around.road_map.edges} - set(sumo.edge.getIDList()):
+            raise ProfileError(f"{KEY}.config: value {self._profile.config}: one on the world's own map")
+        step_s = sumo.simulation.getDeltaT()
+        if abs(step_s - self.period_s) > 1e-9:
+            raise ProfileError(f"{KEY}.address: value with steps of {step_s:g} s: {self.period_s:g} s")
+        for _ in range(round(self._profile.warm_up_s / self.period_s)):
+            sumo.simulationStep()
+        self._clear(ego)
+        self._reader = SignalReader(sumo, [one.id for one in self._around.road_map.signals], self._around.tick_hz)
+        sumo.vehicletype.copy("DEFAULT_VEHTYPE", EGO)
+        sumo.vehicletype.setLength(EGO, ego.length_m)
+        sumo.vehicletype.setWidth(EGO, ego.width_m)
+        sumo.route.add(EGO, self._route())
+        self._enter(ego)
+        # The step before the drive: what is there at tick 0.
+        self._start_s = sumo.simulation.getTime() + self.period_s
+        self._step(ego)
+
+    def _enter(self, ego: Box) -> None:
+        """Put the ego on the road, where it is."""
+        sumo, place = self._sumo, bumper_of(ego, self._around.road_map.moved_m)
+        sumo.vehicle.add(EGO, EGO, typeID=EGO)
+        sumo.vehicle.setSpeedMode(EGO, _BY_THE_DRIVE)
+        sumo.vehicle.setLaneChangeMode(EGO, 0)
+        sumo.vehicle.moveToXY(EGO, "", -1, place.x_m, place.y_m, place.angle_deg, _EXACTLY)
+        sumo.vehicle.subscribeContext(EGO, OF_VEHICLES, self._profile.radius_m, VEHICLE_FIELDS)
+        # People round a point that goes with the ego: vehicles and people of one name stay apart.
+        sumo.poi.add(EGO, place.x_m, place.y_m, (0, 0, 0, 0))
+        sumo.poi.subscribeContext(EGO, OF_PEOPLE, self._profile.radius_m, PERSON_FIELDS)
+
+    def _step(self, ego: Box) -> None:
+        sumo, moved_m = self._sumo, self._around.road_map.moved_m
+        place = bumper_of(ego, moved_m)
+        sumo.vehicle.moveToXY(EGO, "", -1, place.x_m, place.y_m, place.angle_deg, _EXACTLY)
+        sumo.poi.setPosition(EGO, place.x_m, place.y_m)
+        self._brake()
+        sumo.simulationStep()
+        vehicles: dict[str, Mapping[int, Any]] = dict(sumo.vehicle.getContextSubscriptionResults(EGO))
+        people: Found = sumo.poi.getContextSubscriptionResults(EGO)
+        own = vehicles.pop(EGO, None)  # off the road it is not among those round it
+        x_m, y_m = sumo.vehicle.getPosition(EGO) if own is None else position_of(own)
+        self.ego_error_m = max(self.ego_error_m, math.hypot(x_m - place.x_m, y_m - place.y_m))
+        users = road_users(vehicles, people, self._numbers, moved_m, (place.x_m, place.y_m))
+        if self._around.ground is not None and len(users):
+            users[:, 9] = spline_at(self._around.ground, 0, users[:, 2], users[:, 3])
+        self._users = users
+        self.signals.take(self._reader.read(self._start_s))
+
+    def _brake(self) -> None:
+        """Let those who have collided come to rest."""
+        for name, speed_mps in list(self._crashed.items()):
+            try:
+                self._sumo.vehicle.setSpeed(name, speed_mps)
+                self._crashed[name] = max(0.0, speed_mps - STOPPING_MPS2 * self.period_s)
+            except self._errors:
+                if name in self._sumo.vehicle.getIDList():
+                    raise
+                del self._crashed[name]  # somebody else has taken it off the road
+
+    def _clear(self, ego: Box) -> None:
+        """Take off the road whom the ego's sudden coming would surprise."""
+        sumo, place = self._sumo, bumper_of(ego, self._around.road_map.moved_m)
+        for name in sumo.vehicle.getIDList():
+            x_m, y_m = sumo.vehicle.getPosition(name)
+            if math.hypot(x_m - place.x_m, y_m - place.y_m) < CLEAR_M:
+                sumo.vehicle.remove(name)
+
+    def _route(self) -> list[str]:
+        """Return the edges of the world's route, again and again where it is a loop."""
+        road_map, legs = self._around.road_map, self._around.legs
+        lanes, edges = road_map.lanes, road_map.edges
+        once = [edges[lanes[leg.lanes[-1]].edge].id for leg in legs]
+        if not once:
+            return [next(edge.id for edge in edges if edge.function == ROAD and lanes[edge.lanes[-1]].drivable)]
+        first, last = lanes[legs[0].lanes[0]].edge, lanes[legs[-1].lanes[-1]].edge
+        closed = any(
+            lanes[one.from_lane].edge == last and lanes[one.to_lane].edge == first for one in road_map.connections
+        )
+        if not closed or first == last:
+            return once
+        length_m = sum(lanes[leg.lanes[-1]].length_m for leg in legs)
+        return once * math.ceil(LONG_M / max(length_m, 1.0))
+
+    def _options(self, profile: TrafficProfile, folder: Path) -> list[str]:
+        """Return SUMO's options, and write the files that they name."""
+        options = [
+            *("--step-length", f"{self.period_s:g}", "--seed", str(profile.seed % 2**31)),
+            *("--collision.action", "warn"),  # what a collision does is the console's affair
+            *("--no-step-log", "true", "--duration-log.disable", "true", "--no-warnings", "true"),
+        ]
+        sumo: SumoProfile = self._profile
+        if sumo.config is not None:
+            return ["--configuration-file", sumo.config, *options]
+        net, routes = folder / "map.net.xml", folder / "demand.rou.xml"
+        net.write_bytes(self._around.net)
+        horizon_s = min(self._around.duration_s or _HORIZON_S, _MOST_S) + sumo.warm_up_s
+        routes.write_text(
+            demand(
+                self._around.road_map,
+                vehicles=sumo.vehicles,
+                pedestrians=sumo.pedestrians,
+                seed=profile.seed,
+                horizon_s=horizon_s,
+            ),
+            encoding="utf-8",
+        )
+        return [
+            *("--net-file", str(net), "--route-files", str(routes), "--ignore-route-errors", "true"),
+            *("--time-to-teleport", "-1"),
+            *options,
+        ]

@@ -1,0 +1,56 @@
+"""The autopilot among SUMO's traffic and SUMO's signals: nobody is touched, no light is passed at red by us."""
+
+from pathlib import Path
+
+import numpy as np
+
+from simconsole.recording.bundles.bundle import open_bundle
+from simconsole.recording.bundles.replay_bundle import replay_bundle
+from simconsole.recording.log_header import SIGNALS
+from simconsole.recording.recorded_road_users import recorded_road_users
+from simconsole.session.lifecycle import drive
+from simconsole.session.resolution import load_session, resolve
+from simconsole.values.signals import FAR
+from tests.drives.test_traffic_obeyed import BY_ROS, LINK, PART
+from tests.paths import ROOT
+from tests.samples import Sample
+
+SEEDS, LONG_SEEDS = 2, 20
+DRIVEN_S = 110
+
+
+def driven(seed: int, folder: Path) -> Path:
+    folder.mkdir()
+    (folder / "map.net.xml").write_bytes((ROOT / "profiles/worlds/urban_signals.net.xml").read_bytes())
+    (folder / "world.yaml").write_text(
+        f"schema: 1\nkind: roads\ntitle: on SUMO\nmap: {{name: map.net.xml}}\nroute: {{by: edges, edges: {PART}}}\n"
+    )
+    (folder / "session.yaml").write_text(
+        f"schema: 1\nenvironment: {{world: world.yaml, traffic: {{seed: {seed}, sumo: {{vehicles: 30}}}}}}\n"
+        f"scenario: {{vehicle: hatchback, duration_s: {DRIVEN_S}}}\n"
+        "outputs: {hud: null, scene: null, report: false, bridge: {port: 0, link: "
+        f"{LINK.replace('SEED', str(seed))}}}}}\n{BY_ROS}"
+    )
+    return drive(resolve(load_session(str(folder / "session.yaml"))), folder / "bundle").folder
+
+
+def test_nobody_is_touched_and_no_red_light_is_passed(tmp_path: Path, sample: Sample) -> None:
+    for number in range(sample.of(SEEDS, LONG_SEEDS)):
+        judge(driven((sample.seed + number) % 2**31, tmp_path / f"drive{number}"))
+
+
+def judge(folder: Path) -> None:
+    bundle = open_bundle(folder)
+    table = bundle.log.table()
+    assert not table.column("rules.red_light").any()
+    assert not table.column("rules.collision").any()
+    assert not table.column("ahead.traffic_lost").any()
+    assert table.column("vehicle.distance_m")[-1] > 150.0
+    assert max(len(at.users) for at in recorded_road_users(bundle.log)) > 3
+    assert list(bundle.log.messages(SIGNALS))
+    seen = table.column("ahead.approach") > 0.0
+    assert seen.any()
+    same = table.column("situation.signal_state")[seen] == table.column("ahead.signal_state")[seen]
+    assert np.mean(same) > 0.99, "but for changes of lanes"
+    assert (table.column("ahead.signal_tick")[seen] < FAR).any()
+    assert replay_bundle(bundle.folder).hashes_equal

@@ -1,0 +1,49 @@
+"""Signals that another simulator runs, in the words of our own."""
+
+import json
+
+from simconsole.values.signals import FAR, SignalState
+from simconsole.world.roads.road_map import Phase
+from simconsole.world.rules.approaches import Approach
+from simconsole.world.rules.running_signals import Running, RunningSignals, Shown
+from tests.world.nets import CITY, generated_map
+
+PHASES = (Phase(20.0, "Gr"), Phase(3.0, "yr"), Phase(10.0, "rG"))
+RED, GREEN = SignalState.STOP_AND_REMAIN, SignalState.PROTECTED_MOVEMENT_ALLOWED
+
+
+def running(phase: int, switch_tick: float) -> tuple[RunningSignals, str]:
+    signals = RunningSignals(generated_map(*CITY), 100)
+    name = generated_map(*CITY).signals[0].id
+    signals.take({name: Running(PHASES[phase].state, PHASES, phase, switch_tick)})
+    return signals, name
+
+
+def test_the_program_says_what_comes_next_and_when() -> None:
+    signals, _ = running(0, 700.0)
+    assert signals.of(Approach(0, (0,))) == Shown(GREEN, SignalState.PERMISSIVE_CLEARANCE, 700.0)
+    assert signals.of(Approach(0, (1,))) == Shown(RED, GREEN, 1000.0), "after the yellow of the others"
+    assert signals.of(Approach(0, (0, 1))).state == GREEN, "the most permissive"
+    assert signals.shown(0, 500).change_s == [2.0, 5.0]
+    assert signals.state(0, 1, 500) == RED
+
+
+def test_a_phase_without_an_end_never_changes() -> None:
+    signals, _ = running(2, FAR)
+    assert signals.of(Approach(0, (1,))) == Shown(GREEN, GREEN, FAR)
+    assert signals.shown(0, 5).change_s == [-1.0, -1.0]
+
+
+def test_signal_that_nobody_runs_is_unavailable() -> None:
+    signals, _ = running(0, 700.0)
+    assert signals.of(Approach(1, (0,))).state == SignalState.UNAVAILABLE
+    assert signals.shown(1, 5).states == []
+
+
+def test_changes_are_told_once() -> None:
+    signals, name = running(0, 700.0)
+    said = signals.changed()
+    assert said is not None
+    assert json.loads(said) == {name: {"states": "Gr", "switch_tick": 700.0}}
+    signals.take({name: Running("Gr", PHASES, 0, 700.0)})
+    assert signals.changed() is None
