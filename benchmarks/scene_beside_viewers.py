@@ -2,7 +2,8 @@
 
 One seated drive with its scene, seen through its ring: when each tick was published, against its time. Without a
 viewer, with two, with one that is frozen, and after one was killed, in turns within one run; told is the median
-lateness of each and its ratio to that without. The server is fed as `simconsole view` does.
+lateness of each, from the earliest tick of the whole run, and its ratio to that without. The server is fed as
+`simconsole view` does.
 """
 
 import argparse
@@ -22,6 +23,7 @@ from simconsole.scene.viewer.scene_server import SceneServer, quiet_environment,
 from simconsole.session.worker_programs import SNAPSHOTS
 
 HZ = 250
+PERIOD_NS = 1_000_000_000 // HZ
 SESSION = """\
 schema: 1
 environment: {world: urban_signals, traffic: {vehicles: 30, parked: 0}}
@@ -43,13 +45,21 @@ class Watch:
 
     def __init__(self, ring: Ring) -> None:
         self._ring, self._seen = ring, ring.newest
+        self._first_ns: int | None = None
 
     def lateness_ns(self) -> list[int]:
-        """Return how much later each new tick was published than its time says, up to a constant."""
+        """Return how much later each new tick was published than its time says, up to a constant.
+
+        After a stall ticks are left out for good: what comes then is later by whole periods, which are taken off.
+        """
         records = self._ring.since(self._seen)
         if records:
             self._seen = records[-1].number
-        return [record.second_stamp - record.stamp * (1_000_000_000 // HZ) for record in records]
+        late = [record.second_stamp - record.stamp * PERIOD_NS for record in records]
+        if late and self._first_ns is None:
+            self._first_ns = min(late)
+        left_out = round((min(late) - self._first_ns) / PERIOD_NS) if late and self._first_ns is not None else 0
+        return [each - left_out * PERIOD_NS for each in late]
 
 
 def viewer(address: str) -> "subprocess.Popen[bytes]":
@@ -88,9 +98,10 @@ def main() -> None:
         finally:
             core.send_signal(signal.SIGINT)
             core.wait()
-    without = np.median(found[PHASES[0]])
+    earliest_ns = min(map(min, found.values()))
+    without = np.median(found[PHASES[0]]) - earliest_ns
     for phase in PHASES:
-        middle = np.median(found[phase])
+        middle = np.median(found[phase]) - earliest_ns
         print(f"{phase}: median {middle / 1e3:.0f} us late, {middle / without:.2f} times (at most 1.1)")
     print(f"of {sum(map(len, found.values()))} ticks")
 
@@ -105,7 +116,7 @@ def settle(server: SceneServer | None) -> None:
 
 
 def measured(phase: str, path: Path, watch: Watch, length_s: float) -> list[float]:
-    """Return the lateness of the ticks of one phase, in ns, from the earliest tick of it."""
+    """Return the lateness of the ticks of one phase, in ns, up to a constant that is one for the whole run."""
     server = None if phase == PHASES[0] else SceneServer(path)
     viewers = [] if server is None else [viewer(server.addresses.native) for _ in range(2)]
     try:
@@ -124,7 +135,7 @@ def measured(phase: str, path: Path, watch: Watch, length_s: float) -> list[floa
                 server.pump()
             late += watch.lateness_ns()
             time.sleep(0.05)
-        return [float(each - min(late)) for each in late]
+        return [float(each) for each in late]
     finally:
         for one in viewers:
             one.kill()
