@@ -43,7 +43,7 @@ def test_without_choices_a_table_is_everything(short: Path, tmp_path: Path) -> N
     assert run("export", short, "--to", "parquet", "--out", tmp_path / "drive.parquet") == 0
     table = parquet.read_table(tmp_path / "drive.parquet")
     assert table.num_rows == 750
-    assert table.num_columns == 2 + 300
+    assert table.num_columns == 2 + 304
 
 
 def test_a_recording_that_is_not_the_whole_drive_is_exported_and_said_to_be_so(
