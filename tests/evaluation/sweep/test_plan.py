@@ -58,7 +58,7 @@ def test_another_value_or_another_profile_is_another_plan(tmp_path: Path) -> Non
         ({"values": {"body.mass_kg": []}}, r"values\.body\.mass_kg: value missing"),
         ({"values": {"body.mass_kg": {"from": 1, "to": 2, "count": 1}}}, "count"),
         ({"values": {f"mode.a{n}": list(range(10)) for n in range(6)}}, "1000000 drives, at most 100000"),
-        ({"sessions": ["nowhere.yaml"]}, "nowhere.yaml"),
+        ({"sessions": ["nowhere.yaml"]}, "sessions profile: value .*: a file that exists"),
         ({"unknown": 1}, "unknown"),
     ],
 )
