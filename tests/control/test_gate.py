@@ -327,4 +327,6 @@ def test_a_yaw_rate_that_is_not_finite_or_beyond_every_robot_does_not_pass(contr
     assert GateLimit.NON_FINITE in active(bad)
     wild = passed(control, Mode.AUTONOMOUS, remote=twisted(-1e9))
     assert wild.target_yaw_rate_radps == -20.0
+    told = [active(passed(control, Mode.AUTONOMOUS, remote=twisted(rate))) for rate in (1.5, 0.0)]
+    assert told[0] == told[1], "nothing is told of one that passes as it is"
     assert GateLimit.RANGE in active(wild)
