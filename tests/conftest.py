@@ -9,15 +9,20 @@ and writes docs/long-run.md.
 import datetime
 import os
 import signal
+from collections.abc import Sequence
+from typing import Final
 
 import pytest
 
 from tests import long_run
+from tests.account import Account
 from tests.drives.fixtures import demo, once, script, short
 from tests.faults import figures
 from tests.samples import SAMPLED, draw_seed, measured, module_sample, sample
 
 __all__ = ["demo", "measured", "module_sample", "once", "sample", "script", "short"]
+
+account: Final = Account()
 
 # A shell starts background jobs with SIGINT ignored, and nohup ignores SIGHUP; every program that a test starts would
 # inherit that: a Ctrl-C or a hang-up sent to it would be lost, however the tests themselves were started.
@@ -56,9 +61,29 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     items[:] = chosen
 
 
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_node_collection_finished(node: object, ids: Sequence[str]) -> None:
+    """Keep which tests there are; all processes find the same."""
+    account.tests = ids
+
+
+def pytest_runtest_logreport(report: pytest.TestReport) -> None:
+    """Keep of which tests there was an outcome."""
+    if report.when not in ("setup", "call"):  # a process that died in a test is none of the three
+        account.ended.add(report.nodeid)
+
+
+def pytest_internalerror(excrepr: object) -> None:
+    """Keep what ended a process of the run: it is printed when it happens, thousands of tests before the last line."""
+    account.error = account.error or str(excrepr)
+
+
 def pytest_sessionfinish(session: pytest.Session) -> None:
-    """Turn a good run into a bad one where something was left out."""
+    """Turn a good run into a bad one where something was left out, and say what a broken run has not run, and why."""
     reporter = session.config.pluginmanager.get_plugin("terminalreporter")
+    if reporter is not None and account.error:
+        for line in account.lines():
+            reporter.write_line(line)
     if os.environ.get("CI") != "true" or reporter is None:
         return
     left_out = [report for kind in ("skipped", "xfailed") for report in reporter.stats.get(kind, [])]
