@@ -52,10 +52,16 @@ def cluster(folder: Path, workers: int) -> Iterator[Cluster]:
 
 def lanes_of(pid: int) -> list[int]:
     """The processes that drive for a process."""
-    found = []
-    for task in Path(f"/proc/{pid}/task").iterdir():
-        found += [int(child) for child in (task / "children").read_text().split()]
-    return [child for child in found if b"sweep.lane" in Path(f"/proc/{child}/cmdline").read_bytes()]
+    children = [child for task in Path(f"/proc/{pid}/task").iterdir() for child in read(task / "children").split()]
+    return [int(child) for child in children if b"sweep.lane" in read(Path(f"/proc/{child.decode()}/cmdline"))]
+
+
+def read(path: Path) -> bytes:
+    """What stands in a file of /proc; nothing of a thread or process that has ended meanwhile."""
+    try:
+        return path.read_bytes()
+    except (FileNotFoundError, ProcessLookupError):
+        return b""
 
 
 def kill(pid: int) -> None:

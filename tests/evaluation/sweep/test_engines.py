@@ -1,4 +1,5 @@
 import os
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -17,11 +18,10 @@ def by_index(results: list[TaskResult]) -> list[TaskResult]:
 
 def test_lanes_of_this_machine_give_what_one_process_gives_though_one_is_killed(tmp_path: Path) -> None:
     tasks = grip(tmp_path, 8).tasks
-    results = []
-    driven = drive_here(tasks, 2)
-    results.append(next(driven))
-    kill(lanes_of(os.getpid())[0])
-    results += driven
+    with closing(drive_here(tasks, 2)) as driven:
+        results = [next(driven)]
+        kill(lanes_of(os.getpid())[0])
+        results += driven
     assert by_index(results) == [drive_task(task) for task in tasks]
     wait_until(lambda: not lanes_of(os.getpid()), "the lanes' end")
 
@@ -35,8 +35,7 @@ def test_a_sweep_that_is_given_up_leaves_no_process(tmp_path: Path) -> None:
 
 def test_dasks_workers_give_the_same_though_one_is_killed(tmp_path: Path) -> None:
     tasks = grip(tmp_path, 8).tasks
-    with cluster(tmp_path, 2) as workers:
-        driven = drive_on_dask(tasks, workers.url)
+    with cluster(tmp_path, 2) as workers, closing(drive_on_dask(tasks, workers.url)) as driven:
         results = [next(driven)]
         workers.workers[0].kill()
         results += driven
