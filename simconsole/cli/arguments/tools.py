@@ -7,6 +7,17 @@ from simconsole.cli.arguments.command import command
 
 def tools(commands: Any) -> None:
     """Add devices, world, bridge, new and doctor."""
+    _devices(commands)
+    _world(commands)
+    _bridge(commands)
+    new = command(commands, "new", "new.command:new", "a template that runs at once, with a test beside it")
+    new.add_argument("kind", choices=("controller", "scenario", "vehicle", "world", "session"))
+    new.add_argument("name", metavar="NAME", help="lower-case letters, digits and _")
+    new.add_argument("--out", metavar="DIR", default=".", help="where (default: here)")
+    command(commands, "doctor", "doctor:doctor", "what this machine has and lacks")
+
+
+def _devices(commands: Any) -> None:
     devices = command(commands, "devices", "devices:devices", "the cockpit: accept a new one, or one step of it")
     devices.add_argument(
         "action", choices=("list", "check", "calibrate", "feel", "identify", "accept", "record", "speakers")
@@ -27,6 +38,8 @@ def tools(commands: Any) -> None:
     devices.add_argument("--device", metavar="NAME", help="speakers: a sound device by name (default: the system's)")
     devices.add_argument("--out", metavar="FILE", help="record: trace.csv; accept: its folder; else the new profile")
 
+
+def _world(commands: Any) -> None:
     world = command(commands, "world", "world:world", "worlds to drive in: list, show, import or export a map")
     world.add_argument("action", choices=("list", "show", "import", "export"))
     world.add_argument(
@@ -39,6 +52,8 @@ def tools(commands: Any) -> None:
     world.add_argument("--out", metavar="DIR", help="where `import` and `export` write (default: here)")
     world.add_argument("--resolution", type=float, default=0.05, metavar="M", help="export: size of a cell (0.05)")
 
+
+def _bridge(commands: Any) -> None:
     bridge = command(commands, "bridge", "rosbridge:bridge", "rosbridge: serve it alone, check any server")
     bridge.add_argument("action", choices=("serve", "check", "bench", "cert"))
     bridge.add_argument(
@@ -74,13 +89,6 @@ def tools(commands: Any) -> None:
     )
     bridge.add_argument("--trust-network", action="store_true", help="other machines need no token and no TLS")
     bridge.add_argument("--out", metavar="DIR", default=".", help="where `cert` writes")
-
-    new = command(commands, "new", "new.command:new", "a template that runs at once, with a test beside it")
-    new.add_argument("kind", choices=("controller", "scenario", "vehicle", "world", "session"))
-    new.add_argument("name", metavar="NAME", help="lower-case letters, digits and _")
-    new.add_argument("--out", metavar="DIR", default=".", help="where (default: here)")
-
-    command(commands, "doctor", "doctor:doctor", "what this machine has and lacks")
 
 
 def can(commands: Any) -> None:
