@@ -49,6 +49,16 @@ class Plot(NamedTuple):
     high: float | None = None
 
 
+def _pedal(name: str) -> Plot:
+    """Return the plot of a pedal: what each side asks for, and what is applied."""
+    asked = (
+        Series("driver asks", f"arbitration.person_{name}", 1.0, PERSON),
+        Series("autopilot asks", f"arbitration.remote_{name}", 1.0, AUTOPILOT),
+        Series("applied", f"command.{name}", 1.0, APPLIED),
+    )
+    return Plot(f"plots/{name}", f"{name} asked and applied, 0 to 1", asked, -0.05, 1.05)
+
+
 PLOTS: Final[tuple[Plot, ...]] = (
     Plot(
         "plots/speed",
@@ -80,28 +90,8 @@ PLOTS: Final[tuple[Plot, ...]] = (
             Series("hands", "torque.human_nm", 1.0, PERSON),
         ),
     ),
-    Plot(
-        "plots/throttle",
-        "throttle asked and applied, 0 to 1",
-        (
-            Series("driver asks", "arbitration.person_throttle", 1.0, PERSON),
-            Series("autopilot asks", "arbitration.remote_throttle", 1.0, AUTOPILOT),
-            Series("applied", "command.throttle", 1.0, APPLIED),
-        ),
-        -0.05,
-        1.05,
-    ),
-    Plot(
-        "plots/brake",
-        "brake asked and applied, 0 to 1",
-        (
-            Series("driver asks", "arbitration.person_brake", 1.0, PERSON),
-            Series("autopilot asks", "arbitration.remote_brake", 1.0, AUTOPILOT),
-            Series("applied", "command.brake", 1.0, APPLIED),
-        ),
-        -0.05,
-        1.05,
-    ),
+    _pedal("throttle"),
+    _pedal("brake"),
     Plot(
         "plots/link_age",
         "age of the newest command, ms",
