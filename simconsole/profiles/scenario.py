@@ -4,11 +4,11 @@ from typing import Annotated, Any, Literal
 
 from msgspec import Meta
 
-from simconsole.profiles.actors import MOST_ACTORS, Actor
 from simconsole.profiles.device import ScriptProfile
 from simconsole.profiles.faults import EdgeName, ModeName, Trigger
 from simconsole.profiles.manoeuvre import Limit, Manoeuvre
 from simconsole.profiles.session import Section, SessionProfile
+from simconsole.profiles.traffic import MOST_ACTORS, Actor
 
 Seconds = Annotated[float, Meta(ge=0.0, le=86_400.0)]
 

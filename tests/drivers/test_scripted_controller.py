@@ -3,8 +3,9 @@ from typing import get_args
 import pytest
 
 from simconsole.drivers.scripted_controller import ScriptedCommands
+from simconsole.profiles.faults import EdgeName
 from simconsole.profiles.files.loader import load
-from simconsole.profiles.scenario import EdgeName, EventStep, RemoteStep
+from simconsole.profiles.scenario import EventStep, RemoteStep
 from simconsole.profiles.session import SessionProfile
 from simconsole.session.resolution import resolve
 from simconsole.tick.advance import advance

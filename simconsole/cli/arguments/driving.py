@@ -48,7 +48,7 @@ def driving(commands: Any) -> None:
     check.add_argument("--review", metavar="FILE", help="write accepted and driven over each other, where they differ")
     check.add_argument("--update-golden", action="store_true", help="accept what was driven as the new golden")
 
-    scenario = command(commands, "scenario", "scenario:scenario", "import a scenario of another format")
+    scenario = command(commands, "scenario", "scenarios.importing:scenario", "import a scenario of another format")
     scenario.add_argument("action", choices=("import",))
     scenario.add_argument("name", metavar="FILE", help="OpenSCENARIO XML 1.x, .xosc")
     scenario.add_argument("--ego", metavar="ENTITY", help="the console's vehicle (default: the one called ego or hero)")

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Final, NamedTuple, Protocol
 
-from simconsole.profiles.actors import Act, Actor, Vertex
+from simconsole.profiles.traffic import Act, Actor, Vertex
 from simconsole.tick.triggers import Moment
 from simconsole.values.kernels import approach
 from simconsole.values.platform import Pose

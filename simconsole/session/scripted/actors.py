@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
-from simconsole.profiles.actors import Act, Actor
+from simconsole.profiles.traffic import Act, Actor
 from simconsole.session.scripted.actor_motion import MovingActor, straight
 from simconsole.tick.triggers import Moment, TriggerWatch, own_moment
 from simconsole.values.errors import ProfileError

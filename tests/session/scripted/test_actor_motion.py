@@ -2,7 +2,7 @@ import math
 
 import pytest
 
-from simconsole.profiles.actors import Act, Actor, Vertex
+from simconsole.profiles.traffic import Act, Actor, Vertex
 from simconsole.session.scripted.actor_motion import BRAKED_MPS2, MovingActor, straight
 from simconsole.values.platform import Pose
 
