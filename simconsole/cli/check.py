@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 
 from simconsole.cli.outcome import Outcome, table
 from simconsole.evaluation.checks.scenario_check import Verdict, check_scenario
+from simconsole.evaluation.checks.selection import selected
 from simconsole.processes.lifetimes import end_with_parent
 from simconsole.values.errors import ProfileError
 
@@ -17,23 +18,22 @@ def check(options: Namespace) -> Outcome:
     """Drive every scenario; code 1 if one breaks a bound or leaves its golden.
 
     Raises:
-        ProfileError: a scenario cannot be read, or a golden is both to be reviewed and to be accepted.
+        ProfileError: a scenario cannot be read, none is selected, or a golden is to be reviewed and accepted at once.
     """
     if options.review and options.update_golden:
         raise ProfileError("command line: --review: look first, then --update-golden")
+    scenarios = selected(options.scenarios, options.select)
     if options.jobs > 1:
         with ProcessPoolExecutor(options.jobs, get_context("spawn"), end_with_parent) as pool:
-            verdicts = list(
-                pool.map(check_scenario, options.scenarios, [options.update_golden] * len(options.scenarios))
-            )
+            verdicts = list(pool.map(check_scenario, scenarios, [options.update_golden] * len(scenarios)))
     else:
-        verdicts = [check_scenario(scenario, options.update_golden) for scenario in options.scenarios]
+        verdicts = [check_scenario(scenario, options.update_golden) for scenario in scenarios]
     if options.junit:
         _write_junit(Path(options.junit), verdicts)
     if options.report:
         _write_report(Path(options.report), verdicts)
     if options.review:
-        _write_review(Path(options.review), options.scenarios, verdicts)
+        _write_review(Path(options.review), scenarios, verdicts)
     passed = all(verdict.passed for verdict in verdicts)
     results: dict[str, Any] = {"passed": passed, "scenarios": [_results(verdict) for verdict in verdicts]}
     return Outcome(0 if passed else 1, results, "\n".join(_line(verdict) for verdict in verdicts))

@@ -25,7 +25,9 @@ class ScriptedCommands:
         self._steps = [_repeated(step, tick_hz) for step in sorted(remote, key=lambda step: step.start_s)]
         self._edges: dict[int, int] = {}
         for step in events:
-            tick = round(step.at_s * tick_hz)
+            if step.at_s is None:
+                continue  # it waits for what happens in the drive (session/scripted/events.py)
+            tick = round(step.at_s * tick_hz) + round(step.delay_s * tick_hz)
             self._edges[tick] = self._edges.get(tick, 0) | int(Event[step.event.upper()])
         self._sequence = 0
         self._received_tick: int | None = None

@@ -17,7 +17,7 @@ from simconsole.profiles import faults as kinds
 from simconsole.profiles.faults import Fault, Onset
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.tick.loop import Components
-from simconsole.values.signals import Button, Event, Mode
+from simconsole.tick.triggers import TriggerWatch
 from simconsole.values.state_vector import Snapshot
 
 
@@ -32,34 +32,16 @@ class Switch:
     """Whether one fault is on in the coming tick."""
 
     def __init__(self, onset: Onset, tick_hz: int) -> None:
-        self._onset = onset
-        self._tick_hz = tick_hz
-        self._delay = round(onset.delay_s * tick_hz)
-        self._start = None if onset.at_s is None else round(onset.at_s * tick_hz) + self._delay
+        self._watch = TriggerWatch(onset, tick_hz)
+        self._length = None if onset.for_s is None else max(1, round(onset.for_s * tick_hz))
         self.ticks = 0
         """How many ticks it has been on, the coming one included; 0 while it is off."""
 
     def turn(self, tick: int, before: Snapshot) -> None:
         """Decide about `tick` from the tick before it."""
-        if self._start is None and self._reached(before):
-            self._start = tick + self._delay
-        length = None if self._onset.for_s is None else max(1, round(self._onset.for_s * self._tick_hz))
-        on = self._start is not None and tick >= self._start and (length is None or tick < self._start + length)
+        start = self._watch.turn(tick, before)
+        on = start is not None and tick >= start and (self._length is None or tick < start + self._length)
         self.ticks = self.ticks + 1 if on else 0
-
-    def _reached(self, before: Snapshot) -> bool:
-        onset = self._onset
-        if onset.at_distance_m is not None:
-            return before.vehicle.distance_m >= onset.at_distance_m
-        if onset.near is not None:
-            x, y = before.vehicle.x_m - onset.near.x_m, before.vehicle.y_m - onset.near.y_m
-            return x * x + y * y <= onset.near.radius_m * onset.near.radius_m
-        if onset.on_mode is not None:
-            return before.arbitration.mode == float(Mode[onset.on_mode.upper()])
-        if onset.on_event is not None:
-            pressed = int(before.driver.edges) & Button.FAULT and onset.on_event == "fault"
-            return bool(int(before.events.events) & Event[onset.on_event.upper()] or pressed)
-        return False
 
 
 class FaultClock:

@@ -28,13 +28,34 @@ EdgeName: TypeAlias = Literal[
     "mark",
     "loop_stall",
     "no_answer",
+    "pause",
+    "start",
+    "restart",
     "fault",
+    "toggle_anti_lock",
+    "toggle_traction",
+    "toggle_stability",
+    "recording_failed",
+    "end",
+    "operator",
+    "collision",
 ]
 
 MAX_FAULTS = 48
 """The state vector holds the faults that are on as bits of one float64."""
 
-_ONSETS = ("at_s", "at_distance_m", "near", "on_mode", "on_event")
+_ONSETS = (
+    "at_s",
+    "at_distance_m",
+    "near",
+    "above_mps",
+    "below_mps",
+    "gap_below_m",
+    "headway_below_s",
+    "collision_below_s",
+    "on_mode",
+    "on_event",
+)
 
 
 class Place(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -45,19 +66,26 @@ class Place(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     radius_m: Annotated[float, Meta(gt=0.0, le=1000.0)] = 5.0
 
 
-class Onset(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """When a fault begins, once, and how long it lasts. Exactly one of the first five keys is given."""
+class Trigger(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """When something begins, once. Exactly one of the keys before `delay_s` is given.
+
+    A speed or a gap is passed: it was on the other side of the limit before. A gap is that to whom the vehicle follows.
+    """
 
     at_s: Seconds | None = None
     at_distance_m: Annotated[float, Meta(ge=0.0, le=1e6)] | None = None  # driven since the start
     near: Place | None = None
+    above_mps: Annotated[float, Meta(ge=0.0, le=100.0)] | None = None
+    below_mps: Annotated[float, Meta(gt=0.0, le=100.0)] | None = None
+    gap_below_m: Annotated[float, Meta(gt=0.0, le=150.0)] | None = None
+    headway_below_s: Annotated[float, Meta(gt=0.0, le=60.0)] | None = None  # the gap by the own speed
+    collision_below_s: Annotated[float, Meta(gt=0.0, le=60.0)] | None = None  # the gap by the difference of the speeds
     on_mode: ModeName | None = None
     on_event: EdgeName | None = None
     delay_s: Seconds = 0.0  # after that
-    for_s: Annotated[float, Meta(gt=0.0, le=86_400.0)] | None = None  # None: to the end of the drive
 
     def __post_init__(self) -> None:
-        """Refuse a fault without an onset, or with more than one.
+        """Refuse what has no trigger, or more than one.
 
         Raises:
             ValueError: names what is given.
@@ -65,6 +93,12 @@ class Onset(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         given = [name for name in _ONSETS if getattr(self, name) is not None]
         if len(given) != 1:
             raise ValueError(f"{' and '.join(given) or 'no onset'} given, must be exactly one of {', '.join(_ONSETS)}")
+
+
+class Onset(Trigger, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """When a fault begins, and how long it lasts."""
+
+    for_s: Annotated[float, Meta(gt=0.0, le=86_400.0)] | None = None  # None: to the end of the drive
 
 
 class Unplug(Onset, frozen=True, kw_only=True, tag_field="kind", tag="unplug"):

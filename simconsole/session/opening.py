@@ -36,7 +36,7 @@ from simconsole.session.paced import (
 )
 from simconsole.session.pacing import Pacer, UnpacedPacer, realtime_hints
 from simconsole.session.preconditions import check_address
-from simconsole.session.recorder import LogRecorder
+from simconsole.session.recorder import Log, LogRecorder
 from simconsole.session.seat import open_seating
 from simconsole.session.traffic_source import TrafficSource, open_traffic
 from simconsole.session.worker_programs import LATENCY
@@ -81,15 +81,17 @@ class Opened(NamedTuple):
 def open_headless(
     resolved: ResolvedSession,
     console: Console,
-    log: LogWriter,
+    log: Log,
     bundle: Path,
     interrupt: Interrupt,
     stack: ExitStack,
     own: OwnCode = NO_OWN_CODE,
+    scripted: Callable[[Components], Components] = lambda components: components,
 ) -> Opened:
     """Open a drive that runs as fast as it can, all of it in this process. A raised `interrupt` ends all waiting.
 
-    A controller of `own` drives in the place of whoever the session names, as in lockstep.
+    A controller of `own` drives in the place of whoever the session names, as in lockstep. `scripted` puts what a
+    scenario holds into the parts, before faults act on them.
 
     Raises:
         ProfileError: lockstep without a bridge.
@@ -136,7 +138,7 @@ def open_headless(
         road_users=traffic,
     )
     latencies = LatencyStatistics(time.monotonic_ns, console.tick_hz, every=LOOKED_AT)
-    faulty = with_faults(components, resolved, console.tick_hz)
+    faulty = with_faults(scripted(components), resolved, console.tick_hz)
     components = isolated(faulty, UnpacedPacer)._replace(latencies=latencies)
 
     def summary() -> dict[str, Any]:

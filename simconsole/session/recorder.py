@@ -1,16 +1,40 @@
 """The drive loop's recorder: each tick into the log, with the operator's acts and the road users that came with it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
 from simconsole.bridge.console.operator_acts import ActsSummary
-from simconsole.recording.bundles.log import LogWriter
 from simconsole.recording.log_header import ACTS
 from simconsole.values.kernels import Row
 from simconsole.values.signals import Event
 from simconsole.values.state_vector import Snapshot
 
 _RECORDING_FAILED = int(Event.RECORDING_FAILED)
+
+
+class Log(Protocol):
+    """Where a drive is kept; a failing one says why in `failure`."""
+
+    failure: str | None
+
+    def append(self, tick: int, vector: Row, messages: Sequence[tuple[str, bytes]] = ()) -> None:
+        """Keep one tick and the messages that came with it."""
+
+    def append_block(self, tick: int, vectors: Row, messages: Sequence[tuple[str, bytes]] = ()) -> int:
+        """Keep ticks, the messages with the first of them, and return how many."""
+
+
+class NoLog:
+    """The log of a drive that somebody else keeps."""
+
+    failure: str | None = None
+
+    def append(self, tick: int, vector: Row, messages: Sequence[tuple[str, bytes]] = ()) -> None:
+        """Keep nothing."""
+
+    def append_block(self, tick: int, vectors: Row, messages: Sequence[tuple[str, bytes]] = ()) -> int:
+        """Keep nothing."""
+        return len(vectors)
 
 
 class MessageSource(Protocol):
@@ -23,9 +47,7 @@ class MessageSource(Protocol):
 class LogRecorder:
     """Logs every tick, and raises an alarm in every tick after the log has failed."""
 
-    def __init__(
-        self, log: LogWriter, take_acts: Callable[[], list[bytes]] = list, *sources: MessageSource | None
-    ) -> None:
+    def __init__(self, log: Log, take_acts: Callable[[], list[bytes]] = list, *sources: MessageSource | None) -> None:
         """Write to `log`; `take_acts` returns the operator's acts since its last call, each as JSON.
 
         The `sources` are traffic and a lab's own signals, where there are any.

@@ -88,7 +88,7 @@ def load_scenario(name_or_path: str) -> tuple[ScenarioProfile, Path]:
         ProfileError: missing, wrong, or a profile that it names lies outside its folder.
     """
     scenario, path = load("scenarios", name_or_path, ScenarioProfile), find("scenarios", name_or_path)
-    return msgspec.structs.replace(scenario, session=_profiles_beside(scenario.session, path)), path
+    return msgspec.structs.replace(scenario, session=_files_beside(scenario.session, path)), path
 
 
 def load_script(name_or_path: str) -> ScriptProfile:

@@ -27,7 +27,9 @@ def options(monkeypatch: pytest.MonkeyPatch) -> Namespace:
         return VERDICTS[name]
 
     monkeypatch.setattr(commands, "check_scenario", check_scenario)
-    return Namespace(scenarios=["good", "bad"], jobs=1, update_golden=False, junit=None, report=None, review=None)
+    return Namespace(
+        scenarios=["good", "bad"], jobs=1, update_golden=False, junit=None, report=None, review=None, select=None
+    )
 
 
 def test_one_bad_scenario_is_code_1_with_its_problems_below_it(options: Namespace) -> None:

@@ -3,8 +3,9 @@ from typing import get_args
 import pytest
 
 from simconsole.drivers.scripted_controller import ScriptedCommands
+from simconsole.profiles.faults import EdgeName
 from simconsole.profiles.files.loader import load
-from simconsole.profiles.scenario import EventName, EventStep, RemoteStep
+from simconsole.profiles.scenario import EventStep, RemoteStep
 from simconsole.profiles.session import SessionProfile
 from simconsole.session.resolution import resolve
 from simconsole.tick.advance import advance
@@ -42,7 +43,7 @@ def test_degrees_become_radians() -> None:
     assert abs(commands(road_wheel_deg=10.0).take(10)[0].road_wheel_rad - 0.17453292519943295) < 1e-16
 
 
-@pytest.mark.parametrize("name", get_args(EventName))
+@pytest.mark.parametrize("name", get_args(EdgeName))
 def test_every_name_of_an_event_is_one(name: str) -> None:
     source = ScriptedCommands([], [EventStep(at_s=0.0, event=name)], 100)  # type: ignore[arg-type]  # of the Literal
     assert int(source.take(0)[1].events) == Event[name.upper()]

@@ -12,7 +12,7 @@ _MAX_DELAY_MS: Final = 6000.0
 
 
 def driving(commands: Any) -> None:
-    """Add demo, drive, check and sweep."""
+    """Add demo, drive, check, scenario and sweep."""
     demo = command(commands, "demo", "demo:demo", "the whole way once, with no hardware: person, autopilot, report")
     demo.add_argument("--perfect", action="store_true", help="exact odometry and no delay on the autopilot's link")
     demo.add_argument("--realtime", action="store_true", help="pace it, with every worker in its own process")
@@ -38,12 +38,26 @@ def driving(commands: Any) -> None:
         one.add_argument("--no-pack", action="store_true", help="leave the log as it was written")
 
     check = command(commands, "check", "check:check", "drive scripted scenarios headless against their goldens")
-    check.add_argument("scenarios", nargs="+", metavar="SCENARIO", help="by name, or a .yaml file")
+    check.add_argument("scenarios", nargs="+", metavar="SCENARIO", help="by name, a .yaml file, or a folder")
+    check.add_argument(
+        "-k", dest="select", metavar="EXPR", help="only those whose path has these words: hills and not van"
+    )
     check.add_argument("--jobs", type=int, default=1, metavar="N", help="drive N at a time")
     check.add_argument("--report", metavar="FILE", help="write values and plots of the test manoeuvres as HTML")
     check.add_argument("--junit", metavar="FILE", help="write a JUnit report")
     check.add_argument("--review", metavar="FILE", help="write accepted and driven over each other, where they differ")
     check.add_argument("--update-golden", action="store_true", help="accept what was driven as the new golden")
+
+    scenario = command(commands, "scenario", "scenarios.importing:scenario", "import a scenario of another format")
+    scenario.add_argument("action", choices=("import",))
+    scenario.add_argument("name", metavar="FILE", help="OpenSCENARIO XML 1.x, .xosc")
+    scenario.add_argument("--ego", metavar="ENTITY", help="the console's vehicle (default: the one called ego or hero)")
+    scenario.add_argument("--vehicle", default="hatchback", metavar="PROFILE", help="what it is driven as")
+    scenario.add_argument(
+        "--lane-width", type=number(1.0, 10.0, "m"), default=3.5, metavar="M", help="of the road (3.5)"
+    )
+    scenario.add_argument("--partly", action="store_true", help="leave out what is not understood, and list it")
+    scenario.add_argument("--out", metavar="FILE", help="the scenario (default: its name here, .yaml)")
 
     sweep = command(commands, "sweep", "sweep.command:sweep", "many drives of one plan into one table")
     sweep.add_argument("plan", metavar="PLAN", help="a .yaml file: sessions or scenarios, values, seeds")

@@ -6,13 +6,20 @@ says where. It is written and compared line by line, while it is being driven: a
 """
 
 import csv
-from collections.abc import Iterable, Iterator
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from fnmatch import fnmatchcase
 from typing import Final, NamedTuple
 
+import numpy as np
+
+from simconsole.profiles.scenario import Tolerance
 from simconsole.values.errors import ProfileError
 from simconsole.values.kernels import Row
 
 SCHEMA: Final = 1
+SHOWN: Final = 10
+"""Columns that differ, as many as a person is shown."""
 Sample = tuple[int, tuple[float, ...]]
 """A tick and its state vector."""
 
@@ -81,17 +88,31 @@ class Golden:
             yield sample
 
 
-class Comparison:
-    """Compares a drive with its golden, sample by sample: the bits of the columns that both have."""
+class ColumnDifference(NamedTuple):
+    """A column that differs: where first, and where most."""
 
-    def __init__(self, accepted: Golden, columns: tuple[str, ...]) -> None:
+    first: Difference
+    largest: float  # absolute; inf where one of the two is no number
+    largest_tick: int
+
+
+class Comparison:
+    """Compares a drive with its golden, sample by sample: the columns that both have.
+
+    Equal is what has equal bits, or is as near as the column's tolerance allows.
+    """
+
+    def __init__(self, accepted: Golden, columns: tuple[str, ...], tolerances: Sequence[Tolerance] = ()) -> None:
         self._samples = iter(accepted)
         self._next = next(self._samples, None)
-        self._shared = [(at, columns.index(name)) for at, name in enumerate(accepted.columns) if name in columns]
+        absolute, relative = _allowed(accepted.columns, tolerances)
+        shared = [at for at, name in enumerate(accepted.columns) if name in columns and absolute[at] < math.inf]
+        self._old, self._now = shared, [columns.index(accepted.columns[at]) for at in shared]
+        self._absolute, self._relative = absolute[shared], relative[shared]
         self._columns = accepted.columns
         self._driven = 0
         self._missing: int | None = None  # the first accepted tick that was not driven, before any other difference
-        self._difference: Difference | None = None
+        self._found: dict[int, ColumnDifference] = {}
 
     def see(self, tick: int, row: Row) -> None:
         """Look at the next sample that was driven. Raises ProfileError where the golden cannot be read."""
@@ -100,15 +121,12 @@ class Comparison:
             self._skip(self._next[0])
         if self._next is None or self._next[0] != tick:
             return
-        values = self._next[1]
+        old = np.array(self._next[1])[self._old]
         self._next = next(self._samples, None)
-        if self._missing is not None or self._difference is not None:
-            return
-        for at, now in self._shared:
-            old, new = values[at], float(row[now])
-            if old != new and not (old != old and new != new):
-                self._difference = Difference(tick, self._columns[at], old, new)
-                return
+        new = np.asarray(row)[self._now]
+        unequal = (old != new) & ~((old != old) & (new != new))
+        if self._missing is None and unequal.any():
+            self._note(tick, old, new, np.flatnonzero(unequal).tolist())
 
     def first_difference(self) -> Difference | None:
         """Return the first difference between the finished drive and its golden, None where there is none."""
@@ -116,9 +134,53 @@ class Comparison:
             self._skip(self._next[0])
         if self._missing is not None:
             return Difference(self._missing, "tick", float(self._missing), float(self._driven))
-        return self._difference
+        found = self.differences()
+        return found[0].first if found else None
+
+    def differences(self) -> list[ColumnDifference]:
+        """Return the columns that differ, by where they do so first."""
+        return [self._found[at] for at in sorted(self._found, key=lambda at: (self._found[at].first.tick, at))]
+
+    def _note(self, tick: int, old: Row, new: Row, places: list[int]) -> None:
+        for at in places:
+            apart = abs(new[at] - old[at])
+            apart = apart if math.isfinite(apart) else math.inf
+            if apart <= self._absolute[at] + self._relative[at] * abs(old[at]):
+                continue
+            known = self._found.get(at)
+            if known is None:
+                column = self._columns[self._old[at]]
+                first = Difference(tick, column, float(old[at]), float(new[at]))
+                self._found[at] = ColumnDifference(first, float(apart), tick)
+            elif apart > known.largest:
+                self._found[at] = known._replace(largest=float(apart), largest_tick=tick)
 
     def _skip(self, tick: int) -> None:
-        if self._missing is None and self._difference is None:
+        if self._missing is None and not self._found:
             self._missing = tick
         self._next = next(self._samples, None)
+
+
+def readable(found: Sequence[ColumnDifference], tick_hz: int) -> list[str]:
+    """Return differences as lines of a table, those that come first, and how many more there are."""
+    if not found:
+        return []
+    names = max(len("column"), *(len(one.first.column) for one in found[:SHOWN]))
+    lines = [f"{'column':{names}}  {'from':>9}  {'accepted':>12}  {'driven':>12}  {'at most':>10}  {'at':>9}"]
+    for first, largest, tick in found[:SHOWN]:
+        lines.append(
+            f"{first.column:{names}}  {first.tick / tick_hz:7.3f} s  {first.accepted:12.6g}  {first.driven:12.6g}"
+            f"  {largest:10.3g}  {tick / tick_hz:7.3f} s"
+        )
+    more = len(found) - SHOWN
+    return [*lines, f"and {more} more columns"] if more > 0 else lines
+
+
+def _allowed(columns: Sequence[str], tolerances: Sequence[Tolerance]) -> tuple[Row, Row]:
+    """Return how far each column may be from its golden, absolutely and as a share of it."""
+    absolute, relative = np.zeros(len(columns)), np.zeros(len(columns))
+    for one in tolerances:
+        for at, name in enumerate(columns):
+            if fnmatchcase(name, one.columns):
+                absolute[at], relative[at] = math.inf if one.ignore else one.absolute, one.relative
+    return absolute, relative

@@ -7,29 +7,26 @@ import math
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Any, NamedTuple, Self, TextIO, TypeVar
+from typing import NamedTuple, TypeVar
 
-from simconsole.devices.calibration.cockpit_settings import cockpit_settings
-from simconsole.devices.synthetic.script import ScriptSource
-from simconsole.drivers.scripted_controller import ScriptedCommands
 from simconsole.evaluation.checks import golden
 from simconsole.evaluation.checks.manoeuvre_check import drive, judge_limit
+from simconsole.evaluation.checks.memory_recorder import MemoryRecorder
+from simconsole.evaluation.checks.sampled import Accepting, Comparing
+from simconsole.evaluation.checks.whole_drive import judge_metrics, judge_modes, numbers_of
 from simconsole.evaluation.manoeuvres.attempt import Result
-from simconsole.faults.schedule import with_faults
+from simconsole.evaluation.metrics.table import drive_of
 from simconsole.profiles.manoeuvre import Limit, Manoeuvre
 from simconsole.profiles.scenario import Check, ScenarioProfile
 from simconsole.recording.framing import START_OF_CHAIN, chain
-from simconsole.session.pacing import UnpacedPacer
 from simconsole.session.resolution import load_scenario, resolve
+from simconsole.session.scripted.opening import as_driven, open_scenario
 from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession, assemble
-from simconsole.tick.isolation import isolated
-from simconsole.tick.loop import Components, Recorder, run
+from simconsole.tick.loop import Recorder, run
 from simconsole.values.errors import ProfileError
-from simconsole.values.host.files import replaced
 from simconsole.values.host.jit import compiled
 from simconsole.values.kernels import Row
-from simconsole.values.protocols import DeviceSource, NobodySeated
 from simconsole.values.state_vector import Snapshot
 
 R = TypeVar("R", bound=Recorder)
@@ -60,18 +57,31 @@ def check_scenario(name_or_path: str, update_golden: bool = False) -> Verdict:
     if scenario.manoeuvre is not None:
         return _check_manoeuvre(scenario, scenario.manoeuvre, path)
     accepted = path.parent / "golden" / f"{path.stem}.csv"
+    resolved = resolve(scenario.session)
     with ExitStack() as stack:
 
         def watched(console: Console) -> Watch:
-            sampled = (Accepting if update_golden else Comparing)(accepted, console.tick_hz, console.columns)
+            sampled = (Accepting if update_golden else Comparing)(
+                accepted, console.tick_hz, console.columns, scenario.tolerances
+            )
             stack.enter_context(sampled)
             bounds = [Bound(check, console.columns, console.tick_hz, str(path)) for check in scenario.checks]
-            return Watch(bounds, sampled, golden.step_ticks(console.tick_hz, scenario.golden_hz))
+            watch = Watch(bounds, sampled, golden.step_ticks(console.tick_hz, scenario.golden_hz), console.columns)
+            watch.keep_modes(bool(scenario.modes))
+            if scenario.metrics:
+                watch.kept = MemoryRecorder(round(scenario.duration_s * console.tick_hz), console.width)
+            return watch
 
-        watch = drive_scenario(scenario, watched)
+        refused: list[str] = []
+        watch = drive_scenario(scenario, watched, resolved, refused.append)
         digest = watch.digest.hex()
         judged = [bound.problem(watch.ticks) for bound in watch.bounds]
-        problems = [problem for problem in judged if problem is not None] + watch.samples.end(digest)
+        problems = refused + [problem for problem in judged if problem is not None]
+        problems += judge_modes(scenario.modes, watch.modes)
+        if watch.kept is not None:
+            drive_kept = drive_of(watch.kept.vectors, watch.columns, resolved.session.mode.tick_hz)
+            problems += judge_metrics(scenario.metrics, dict(numbers_of(drive_kept, resolved)))
+        problems += watch.samples.end(digest)
     return Verdict(
         scenario=path.stem,
         passed=not problems,
@@ -101,25 +111,28 @@ def _check_manoeuvre(scenario: ScenarioProfile, manoeuvre: Manoeuvre, path: Path
 
 
 def drive_scenario(
-    scenario: ScenarioProfile, recorder_of: Callable[[Console], R], resolved: ResolvedSession | None = None
+    scenario: ScenarioProfile,
+    recorder_of: Callable[[Console], R],
+    resolved: ResolvedSession | None = None,
+    told: Callable[[str], object] = lambda problem: None,
 ) -> R:
-    """Drive a scenario without files into the recorder that `recorder_of` makes, and return that.
+    """Drive a scenario without a bundle into the recorder that `recorder_of` makes, and return that.
 
-    `resolved` takes the place of the scenario's own session: the same with other values.
+    `resolved` takes the place of the scenario's own session: the same with other values. `told` hears what the console
+    refused of the scenario's own messages.
+
+    Raises:
+        SimConsoleError: the session cannot be opened, or the scenario's inputs do not fit together.
     """
-    resolved = resolve(scenario.session) if resolved is None else resolved
+    resolved = as_driven(scenario, resolve(scenario.session) if resolved is None else resolved)
     console, state = assemble(resolved, compiled)
-    tick_hz = console.tick_hz
-    devices: DeviceSource = NobodySeated()
-    if scenario.script is not None:
-        devices = ScriptSource(scenario.script, cockpit_settings(resolved.cockpit, tick_hz), tick_hz=tick_hz)
     recorder = recorder_of(console)
-    commands = ScriptedCommands(scenario.remote, scenario.events, tick_hz)
-    ecu = ScriptedCommands(scenario.ecu, scenario.ecu_events, tick_hz)
-    components = Components(devices, commands, recorder, outputs=(), pace=UnpacedPacer(), ecu=ecu)
-    components = isolated(with_faults(components, resolved, tick_hz), UnpacedPacer)
-    components = components._replace(recorder=recorder)  # in a check, unlike in a drive, a failing recorder raises
-    run(console, state, components, round(scenario.duration_s * tick_hz))
+    with ExitStack() as stack:
+        opened = open_scenario(scenario, resolved, console, recorder, stack)
+        run(console, state, opened.components, round(scenario.duration_s * console.tick_hz), opened.finished)
+        problem = opened.problem()
+    if problem is not None:
+        told(problem)
     return recorder
 
 
@@ -129,19 +142,37 @@ class Watch:
     Attributes:
         bounds: checked at every tick.
         samples: writes the golden, or compares with it.
+        columns: of a state vector.
         ticks: seen so far.
         digest: chained hash of them.
+        modes: that the drive has had, each with the tick at which it began, as far as they are asked for.
+        kept: the whole drive, where its metrics are asked for.
     """
 
-    def __init__(self, bounds: "Sequence[Bound]", samples: "Accepting | Comparing", step_ticks: int) -> None:
-        self.bounds, self.samples = bounds, samples
+    def __init__(
+        self, bounds: "Sequence[Bound]", samples: Accepting | Comparing, step_ticks: int, columns: tuple[str, ...]
+    ) -> None:
+        self.bounds, self.samples, self.columns = bounds, samples, columns
+        self.modes: list[tuple[int, int]] = []
+        self.kept: MemoryRecorder | None = None
+        self._mode_at: int | None = None
         self._step_ticks = step_ticks
         self.ticks = 0
         self.digest = START_OF_CHAIN
 
+    def keep_modes(self, wanted: bool) -> None:
+        """Note every change of mode, or none."""
+        self._mode_at = self.columns.index("arbitration.mode") if wanted else None
+
     def write(self, snapshot: Snapshot) -> int:
         """Look at one tick."""
         self.ticks += 1
+        if self._mode_at is not None:
+            mode = int(snapshot.vector[self._mode_at])
+            if not self.modes or self.modes[-1][1] != mode:
+                self.modes.append((snapshot.tick, mode))
+        if self.kept is not None:
+            self.kept.write(snapshot)
         self.digest = chain(self.digest, snapshot.tick, snapshot.vector.tobytes())
         for bound in self.bounds:
             bound.see(snapshot.tick, snapshot.vector)
@@ -196,80 +227,3 @@ def _ticks(check: Check, tick_hz: int) -> tuple[int, int | None]:
         tick = max(1, round(check.at_s * tick_hz))
         return tick, tick
     return round(check.from_s * tick_hz) + 1, None if check.until_s is None else round(check.until_s * tick_hz)
-
-
-class Accepting:
-    """Writes the drive as the new golden, which replaces the old one at the end."""
-
-    def __init__(self, path: Path, tick_hz: int, columns: tuple[str, ...]) -> None:
-        self._path, self._tick_hz, self._columns = path, tick_hz, columns
-        self._stack = ExitStack()
-
-    def __enter__(self) -> Self:
-        """Open the draft of the golden."""
-        self._path.parent.mkdir(exist_ok=True)
-        draft = self._stack.enter_context(replaced(self._path))
-        self._file = self._stack.enter_context(draft.open("w", encoding="utf-8", newline="\n"))
-        self._file.write(self._head(START_OF_CHAIN.hex()))
-        return self
-
-    def __exit__(self, *error: Any) -> None:
-        """Replace the golden by the draft, or remove the draft after an error."""
-        self._stack.__exit__(*error)
-
-    def see(self, tick: int, vector: Row) -> None:
-        """Write one sample."""
-        self._file.write(golden.line(tick, vector))
-
-    def end(self, digest: str) -> list[str]:
-        """Write the hash of the drive into the golden's head; return no differences, for the drive is accepted."""
-        self._file.seek(0)
-        self._file.write(self._head(digest))
-        return []
-
-    def _head(self, digest: str) -> str:
-        return golden.head(digest, self._tick_hz, self._columns)
-
-
-class Comparing:
-    """Compares the drive with its golden."""
-
-    def __init__(self, path: Path, tick_hz: int, columns: tuple[str, ...]) -> None:
-        self._path, self._columns = path, columns
-        self._file: TextIO | None = None
-
-    def __enter__(self) -> Self:
-        """Open the golden, if there is one.
-
-        Raises:
-            ProfileError: it is no golden of this version.
-        """
-        if self._path.is_file():
-            self._file = self._path.open(encoding="utf-8", newline="")
-            self._golden = golden.Golden(self._file, str(self._path))
-            self._comparison = golden.Comparison(self._golden, self._columns)
-        return self
-
-    def __exit__(self, *error: Any) -> None:
-        """Close it."""
-        if self._file is not None:
-            self._file.close()
-
-    def see(self, tick: int, vector: Row) -> None:
-        """Compare one sample."""
-        if self._file is not None:
-            self._comparison.see(tick, vector)
-
-    def end(self, digest: str) -> list[str]:
-        """Return how the finished drive differs from the golden, one line or none."""
-        if self._file is None:
-            return [f"{self._path}: no golden; accept one with --update-golden"]
-        difference = self._comparison.first_difference()
-        if (self._golden.hash, self._golden.columns) == (digest, self._columns):
-            return []
-        if difference is None:
-            return [f"{self._path}: hash {digest}, accepted {self._golden.hash}; no sampled value differs"]
-        return [
-            f"{self._path}: tick {difference.tick}: {difference.column}: "
-            f"driven {difference.driven!r}, accepted {difference.accepted!r}"
-        ]

@@ -1,9 +1,8 @@
 """One drive of a sweep: what a worker is given, what it does, what it gives back. Equal tasks give equal results."""
 
 import tempfile
-from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any, Final, Literal
+from typing import Final, Literal
 
 import msgspec
 import numpy as np
@@ -11,9 +10,8 @@ import numpy as np
 from simconsole.evaluation.checks import manoeuvre_check
 from simconsole.evaluation.checks.memory_recorder import MemoryRecorder
 from simconsole.evaluation.checks.scenario_check import Bound, drive_scenario
-from simconsole.evaluation.metrics.drive_metrics import metrics
+from simconsole.evaluation.checks.whole_drive import judge_metrics, judge_modes, modes_of, numbers_of
 from simconsole.evaluation.metrics.table import Drive, drive_of, recorded_drive
-from simconsole.profiles.faults import fault_label
 from simconsole.profiles.scenario import ScenarioProfile
 from simconsole.profiles.sweep import Value
 from simconsole.recording.bundles.bundle import open_bundle
@@ -22,7 +20,6 @@ from simconsole.session import lifecycle
 from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import ProfileError, SimConsoleError, one_line
-from simconsole.world.kinds.worlds import open_world
 
 Outcome = Literal["driven", "passed", "failed", "refused", "crashed", "timed out"]
 """driven: a session to its end; passed, failed: a scenario's bounds or limits; refused: it cannot be driven, `detail`
@@ -93,7 +90,7 @@ def _session(task: Task, folder: Path) -> TaskResult:
         raise KeyboardInterrupt
     if result.recording_failure is not None:
         return TaskResult(index=task.index, outcome="refused", detail=result.recording_failure)
-    found = dict(_numbers_of(_read(folder), task.resolved))
+    found = dict(numbers_of(_read(folder), task.resolved))
     return TaskResult(index=task.index, outcome="driven", ticks=result.ticks, digest=result.digest, metrics=found)
 
 
@@ -115,15 +112,18 @@ def _scenario(task: Task, scenario: ScenarioProfile) -> TaskResult:
         consoles.append(console)
         return MemoryRecorder(round(scenario.duration_s * console.tick_hz), console.width)
 
-    recorder = drive_scenario(scenario, recorder_of, task.resolved)
+    problems: list[str] = []
+    recorder = drive_scenario(scenario, recorder_of, task.resolved, problems.append)
     console = consoles[0]
     bounds = [Bound(check, console.columns, console.tick_hz, task.source) for check in scenario.checks]
     for bound in bounds:
         for tick, vector in enumerate(recorder.vectors, start=1):
             bound.see(tick, vector)
-    problems = [problem for bound in bounds if (problem := bound.problem(recorder.ticks)) is not None]
+    problems += [problem for bound in bounds if (problem := bound.problem(recorder.ticks)) is not None]
     drive = drive_of(recorder.vectors, console.columns, console.tick_hz)
-    return _judged(task, recorder.ticks, recorder.digest.hex(), dict(_numbers_of(drive, task.resolved)), problems)
+    found = dict(numbers_of(drive, task.resolved))
+    problems += judge_modes(scenario.modes, modes_of(drive)) + judge_metrics(scenario.metrics, found)
+    return _judged(task, recorder.ticks, recorder.digest.hex(), found, problems)
 
 
 def _manoeuvre(task: Task, scenario: ScenarioProfile) -> TaskResult:
@@ -147,24 +147,6 @@ def _judged(task: Task, ticks: int, digest: str, found: dict[str, float], proble
         digest=digest,
         metrics=found,
     )
-
-
-def _numbers_of(drive: Drive, resolved: ResolvedSession) -> Iterator[tuple[str, float]]:
-    route = None if resolved.world is None else open_world(resolved.world).route
-    faults = [fault_label(fault) for fault in resolved.session.scenario.faults]
-    yield from numbers(metrics(drive, route, faults=faults))
-
-
-def numbers(values: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, float]]:
-    """Yield the numbers of nested plain values by dotted name; of a list how many it has (`mode_changes.count`)."""
-    for key, value in values.items():
-        name = f"{prefix}{key}"
-        if isinstance(value, Mapping):
-            yield from numbers(value, f"{name}.")
-        elif isinstance(value, (list, tuple)):
-            yield f"{name}.count", float(len(value))
-        elif isinstance(value, (int, float)):
-            yield name, float(value)
 
 
 def to_bytes(task: Task) -> bytes:

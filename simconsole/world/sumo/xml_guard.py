@@ -28,7 +28,9 @@ class Element(NamedTuple):
     children: list["Element"]
 
 
-def read_elements(content: bytes, origin: str, root: str, take: Callable[[Element], None]) -> None:
+def read_elements(
+    content: bytes, origin: str, root: str, take: Callable[[Element], None], depth: int = MAX_DEPTH
+) -> None:
     """Give each child of the root element to `take`, whole, in order.
 
     Args:
@@ -36,11 +38,12 @@ def read_elements(content: bytes, origin: str, root: str, take: Callable[[Elemen
         origin: its name, which opens every message.
         root: the name that the root element must have.
         take: called with each child; only one is in memory at a time.
+        depth: how deep elements may lie in each other.
 
     Raises:
         ProfileError: not XML, another root, or one of the bounds is exceeded; names line and element.
     """
-    reader = _Reader(origin, root, take)
+    reader = _Reader(origin, root, take, depth)
     try:
         reader.parser.Parse(content, True)
     except expat.ExpatError as error:
@@ -57,8 +60,8 @@ def shown(text: str) -> str:
 
 
 class _Reader:
-    def __init__(self, origin: str, root: str, take: Callable[[Element], None]) -> None:
-        self._origin, self._root, self._take = origin, root, take
+    def __init__(self, origin: str, root: str, take: Callable[[Element], None], depth: int) -> None:
+        self._origin, self._root, self._take, self._most_depth = origin, root, take, depth
         self._open: list[Element] = []
         self._depth = self._elements = self._held = 0
         self.parser = expat.ParserCreate()
@@ -82,8 +85,8 @@ class _Reader:
     def _start(self, name: str, attributes: dict[str, str]) -> None:
         self._depth += 1
         self._elements += 1
-        if self._depth > MAX_DEPTH:
-            raise self._refused(name, f"nested more than {MAX_DEPTH} deep: at most {MAX_DEPTH}")
+        if self._depth > self._most_depth:
+            raise self._refused(name, f"nested more than {self._most_depth} deep: at most {self._most_depth}")
         if self._elements > MAX_ELEMENTS:
             raise self._refused(name, f"more than {MAX_ELEMENTS} elements: at most {MAX_ELEMENTS}")
         if len(attributes) > MAX_ATTRIBUTES:

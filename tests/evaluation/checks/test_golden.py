@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from simconsole.evaluation.checks.golden import Comparison, Difference, Golden, Sample, head, line, step_ticks
+from simconsole.evaluation.checks.golden import Comparison, Difference, Golden, Sample, head, line, readable, step_ticks
+from simconsole.profiles.scenario import Tolerance
 from simconsole.values.errors import ProfileError
 
 COLUMNS = ("sample.wheel_axis", "vehicle.vx_mps")
@@ -75,3 +76,43 @@ def test_other_files_are_refused_by_name(written: str) -> None:
 def test_a_bad_value_is_refused_with_its_line(row: str, why: str) -> None:
     with pytest.raises(ProfileError, match=rf"x\.csv: line 3: .*{why}"):
         list(read(f"# simconsole golden schema 1 tick_hz 10 hash 0\ntick,a\n{row}\n"))
+
+
+def compared(rows: np.ndarray, *tolerances: Tolerance) -> Comparison:
+    comparison = Comparison(read(text()), COLUMNS, tolerances)
+    for tick in TICKS:
+        comparison.see(tick, rows[tick - 1])
+    return comparison
+
+
+def test_a_tolerance_is_for_its_columns_alone_and_the_last_counts() -> None:
+    changed = ROWS.copy()
+    changed[7] += 0.01
+    near = Tolerance(columns="vehicle.*", absolute=0.02)
+    assert [one.first.column for one in compared(changed, near).differences()] == ["sample.wheel_axis"]
+    assert compared(changed, near, Tolerance(columns="sample.wheel_axis", relative=0.01)).first_difference() is None
+    assert compared(changed, near, Tolerance(columns="*", ignore=True)).first_difference() is None
+    assert compared(changed, near, Tolerance(columns="vehicle.*", absolute=0.001)).first_difference() is not None
+
+
+def test_nan_is_beyond_every_tolerance_but_what_is_ignored() -> None:
+    changed = ROWS.copy()
+    changed[3, 0] = np.nan
+    assert compared(changed, Tolerance(columns="*", absolute=1e9)).first_difference() is not None
+    assert compared(changed, Tolerance(columns="sample.*", ignore=True)).first_difference() is None
+
+
+def test_differences_are_told_in_the_order_in_which_they_begin() -> None:
+    changed = ROWS.copy()
+    changed[3:, 1] += np.array([0.5, 2.0, 0.1, 3.0, 0.1, 0.1, 1.0])
+    changed[7:, 0] -= 1.0
+    found = compared(changed).differences()
+    assert [(one.first.column, one.first.tick, one.largest_tick) for one in found] == [
+        ("vehicle.vx_mps", 4, 10),
+        ("sample.wheel_axis", 8, 8),
+    ]
+    lines = readable(found, 10)
+    assert len(lines) == 3
+    assert lines[1].split() == ["vehicle.vx_mps", "0.400", "s", "2.33333", "2.83333", "1", "1.000", "s"]
+    assert readable(found * 6, 10)[-1] == "and 2 more columns"
+    assert readable([], 10) == []

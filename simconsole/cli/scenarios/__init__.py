@@ -1,0 +1,1 @@
+"""`simconsole scenario`: scenarios of other formats."""

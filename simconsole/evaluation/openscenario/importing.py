@@ -1,0 +1,149 @@
+"""From an OpenSCENARIO file to a scenario of the console."""
+
+import math
+from typing import Any, Final, NamedTuple
+
+from simconsole.evaluation.openscenario.entities import Entity, actor, entities
+from simconsole.evaluation.openscenario.reading import MOST_TOLD, Left, Source, parts_of
+from simconsole.evaluation.openscenario.storyboard import Told, storyboard
+from simconsole.profiles.scenario import ScenarioProfile
+from simconsole.profiles.validation import convert
+from simconsole.values.errors import ProfileError
+from simconsole.world.sumo.xml_guard import Element
+
+EGO: Final = ("ego", "hero")
+LANE_M: Final = 3.5
+DURATION_S: Final = 30.0
+_SILENT: Final = ("FileHeader", "ParameterDeclarations", "Entities", "Storyboard")
+_NOTED: Final = {
+    "CatalogLocations": "no catalogue is read",
+    "RoadNetwork": "no road map is read: environment.world of the session",
+}
+_NO_CATALOGUES: Final = "CatalogLocations"
+
+
+class Imported(NamedTuple):
+    """A file as a scenario."""
+
+    plain: dict[str, Any]  # its values, as they stand in YAML
+    profile: ScenarioProfile
+    left: tuple[Left, ...]
+
+
+def imported(
+    content: bytes,
+    origin: str,
+    *,
+    ego: str | None = None,
+    vehicle: str = "hatchback",
+    lane_m: float = LANE_M,
+    partly: bool = False,
+) -> Imported:
+    """Return an OpenSCENARIO file as a scenario.
+
+    The console's vehicle begins where the file puts it, at rest, and a controller accelerates it to the speed that it
+    begins with there. All others are actors.
+
+    Args:
+        content: the file.
+        origin: its name, which opens every error.
+        ego: which entity is the console's vehicle; one called ego or hero, without.
+        vehicle: the profile that drives it.
+        lane_m: how wide the lanes are that vehicles change to: no map is read.
+        partly: import what is understood, even if the drive is another one then.
+
+    Raises:
+        ProfileError: no OpenSCENARIO, something cannot be read, or is not understood and changes the drive; names the
+            elements with their lines.
+    """
+    source = Source(origin)
+    parts = parts_of(content, origin)
+    for name in ("FileHeader", "Entities", "Storyboard"):
+        if name not in parts:
+            raise ProfileError(f"{origin}: <{name}>: value missing: a scenario, and no catalogue")
+    for name, part in parts.items():
+        if name in _NOTED:
+            if part.children or name != _NO_CATALOGUES:
+                source.note(part, _NOTED[name])
+        elif name not in _SILENT:
+            source.refuse(part)
+    _check_version(source, parts["FileHeader"])
+    if "ParameterDeclarations" in parts:
+        _declare(source, parts["ParameterDeclarations"])
+    known = entities(source, parts["Entities"])
+    driven = _ego(source, parts["Entities"], known, ego)
+    told = storyboard(source, parts["Storyboard"], driven, known, lane_m)
+    plain = _scenario(source, parts, known, driven, told, vehicle)
+    lost = [str(one) for one in source.left if one.changes]
+    if lost and not partly:
+        more = f"; and {len(lost) - MOST_TOLD} more" if len(lost) > MOST_TOLD else ""
+        raise ProfileError(f"{origin}: {'; '.join(lost[:MOST_TOLD])}{more} (--partly imports the rest)")
+    return Imported(plain, convert(plain, ScenarioProfile, origin), tuple(source.left))
+
+
+def _check_version(source: Source, element: Element) -> None:
+    major = source.text(element, "revMajor")
+    if major != "1":
+        raise source.error(element, f"revMajor: value {major!a}: 1")
+
+
+def _declare(source: Source, element: Element) -> None:
+    for one in source.children(element, "ParameterDeclaration"):
+        name = source.text(one, "name")
+        if name in source.parameters:
+            raise source.error(one, f"name: value {name!a}: another name for each")
+        for constraint in one.children:
+            source.note(constraint, "not checked")
+        value = one.attributes.get("value")
+        if value is None or value.startswith("$"):
+            raise source.error(one, "value: a plain value")
+        source.parameters[name] = value
+
+
+def _ego(source: Source, element: Element, known: dict[str, Entity], wanted: str | None) -> str:
+    names = [name for name in known if (name == wanted if wanted is not None else name.lower() in EGO)]
+    if len(names) != 1:
+        said = wanted or " or ".join(EGO)
+        raise source.error(element, f"{len(names)} entities called {said}: one, the console's vehicle (--ego NAME)")
+    if known[names[0]].kind == "pedestrian":
+        raise source.error(element, f"{names[0]!a} is a pedestrian: the console's vehicle is a vehicle")
+    return names[0]
+
+
+def _scenario(
+    source: Source, parts: dict[str, Element], known: dict[str, Entity], driven: str, told: Told, vehicle: str
+) -> dict[str, Any]:
+    actors = []
+    for name, entity in known.items():
+        beginning = told.beginnings.get(name)
+        if beginning is None or beginning.place is None:
+            if not any(one.changes for one in source.left):
+                raise source.error(parts["Storyboard"], f"entity {name!a}: a <TeleportAction> in <Init>")
+            continue  # its place was not understood, and is listed
+        if name != driven:
+            actors.append({**actor(entity, beginning.place, beginning.speed_mps), "acts": told.acts[name]})
+    own = told.beginnings.get(driven)
+    speed_mps = 0.0 if own is None else own.speed_mps
+    duration_s = told.end_s or DURATION_S
+    title = parts["FileHeader"].attributes.get("description", "")
+    plain: dict[str, Any] = {
+        "schema": 1,
+        "title": "".join(letter for letter in title if letter.isprintable())[:200] or source.origin,
+        "duration_s": duration_s,
+        "session": {
+            "schema": 1,
+            "scenario": {"vehicle": vehicle},
+            "features": {"control": {"person_required": False}},
+            "devices": {"driver": "none"},
+        },
+        "golden_hz": 1,
+    }
+    if own is not None and own.place is not None:
+        yaw_deg = math.degrees(math.remainder(own.place.yaw_rad or 0.0, math.tau))
+        plain["session"]["scenario"]["start"] = {"x_m": own.place.x_m, "y_m": own.place.y_m, "yaw_deg": yaw_deg}
+    if speed_mps > 0.0:
+        plain["remote"] = [{"start_s": 0.1, "end_s": duration_s, "kind": "speed", "speed_mps": speed_mps}]
+        plain["events"] = [{"event": "request_autonomous", "at_s": 0.5}]
+    if actors:
+        plain["actors"] = actors
+    return plain

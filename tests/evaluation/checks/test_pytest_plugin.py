@@ -1,0 +1,72 @@
+"""The plugin in a fresh folder, as a lab has it: found by the entry point, run by a pytest of its own."""
+
+import subprocess
+import sys
+from importlib.metadata import entry_points
+from pathlib import Path
+
+import pytest
+
+GOOD = """\
+schema: 1
+title: stands
+duration_s: 1
+session:
+  schema: 1
+  scenario: {vehicle: ball}
+  devices: {driver: none}
+checks:
+  - {column: vehicle.vx_mps, min: 0.0, max: 0.0}
+"""
+BAD = GOOD.replace("min: 0.0, max: 0.0", "min: 1.0")
+WRONG = GOOD.replace("duration_s: 1", "duration_s: -1")
+
+
+def own_pytest(folder: Path, *arguments: str) -> tuple[int, str]:
+    """Run pytest in a lab's folder; return its code and what it says."""
+    command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "-p", "no:xdist", *arguments]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    return done.returncode, done.stdout + done.stderr
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "stands.scenario.yaml").write_text(GOOD)
+    (tmp_path / "other.yaml").write_text("no: scenario\n")
+    return tmp_path
+
+
+def test_it_is_an_entry_point() -> None:
+    (found,) = (one for one in entry_points(group="pytest11") if one.name == "simconsole")
+    assert found.value == "simconsole.evaluation.checks.pytest_plugin"
+
+
+def test_scenarios_are_collected_accepted_and_then_passed(folder: Path) -> None:
+    code, said = own_pytest(folder)
+    assert code == 1
+    assert "no golden; accept one" in said
+    code, said = own_pytest(folder, "--simconsole-update-golden")
+    assert (code, "1 passed" in said) == (0, True), said
+    assert (folder / "golden" / "stands.scenario.csv").is_file()
+    code, said = own_pytest(folder, "-k", "stands")
+    assert (code, "1 passed" in said) == (0, True), said
+
+
+def test_what_fails_is_told_without_our_trace(folder: Path) -> None:
+    (folder / "moves.scenario.yaml").write_text(BAD)
+    (folder / "wrong.scenario.yaml").write_text(WRONG)
+    own_pytest(folder, "--simconsole-update-golden")
+    code, said = own_pytest(folder)
+    assert (code, "2 failed, 1 passed" in said) == (1, True), said
+    assert "tick 1: vehicle.vx_mps: 0.0 not in 1.0 to inf" in said
+    assert "wrong.scenario.yaml: duration_s: value -1" in said
+    assert "Traceback" not in said
+    assert "scenario_check.py" not in said
+
+
+def test_a_lab_says_which_files_are_its_scenarios(folder: Path) -> None:
+    (folder / "pytest.ini").write_text("[pytest]\nsimconsole_scenarios = drives/*.yaml\n")
+    (folder / "drives").mkdir()
+    (folder / "drives" / "mine.yaml").write_text(GOOD)
+    code, said = own_pytest(folder, "--collect-only", "-q")
+    assert (code, "drives/mine.yaml" in said, "stands" in said) == (0, True, False), said

@@ -1,0 +1,145 @@
+"""Files of scenariogeneration, whole and badly edited: imported, or refused with the element's name."""
+
+import random
+import re
+from typing import Final
+
+import pytest
+
+from simconsole.evaluation.openscenario.importing import imported
+from simconsole.values.errors import ProfileError
+from tests.evaluation.in_memory import drive_scenario
+from tests.evaluation.openscenario.files import NOT_UNDERSTOOD, UNDERSTOOD, all_files, written
+
+MUTATIONS: Final = 300
+WORDS: Final = ("", "nan", "inf", "-1e9", "1e300", "zwölf", "$speed", "$no", "${1+1}", "true", "0", "\x7f", "9" * 400)
+
+
+def mutated(content: bytes, rng: random.Random) -> bytes:
+    """Return a file after one thing that happens to files: an edit, a loss, a copy."""
+    text = content.decode()
+    how = rng.randrange(8)
+    tags = [match.span() for match in re.finditer(r"<[^>]+>", text)]
+    values = [match.span(1) for match in re.finditer(r'="([^"]*)"', text)]
+    if how == 0:  # a value that is another
+        start, end = rng.choice(values)
+        words = (
+            "",
+            "nan",
+            "inf",
+            "-1e9",
+            "1e300",
+            "zwölf",
+            "$speed",
+            "$nobody",
+            "${1+1}",
+            "true",
+            "0",
+            "\x7f",
+            "9" * 400,
+        )
+        return (text[:start] + rng.choice(words) + text[end:]).encode()
+    if how == 1:  # an element without its begin or end
+        start, end = rng.choice(tags)
+        return (text[:start] + text[end:]).encode()
+    if how == 2:  # an element twice
+        start, end = rng.choice([span for span in tags if text[span[1] - 2] == "/"])
+        return (text[:end] + text[start:end] + text[end:]).encode()
+    if how == 3:  # an element with another name
+        start, end = rng.choice([span for span in tags if text[span[1] - 2] == "/"])
+        return (text[:start] + re.sub(r"<\w+", "<Elsewhere", text[start:end]) + text[end:]).encode()
+    if how == 4:  # an attribute that is gone
+        start, end = rng.choice([match.span() for match in re.finditer(r' \w+="[^"]*"', text)])
+        return (text[:start] + text[end:]).encode()
+    if how == 5:  # a file that was cut off
+        return content[: rng.randrange(len(content))]
+    if how == 6:  # a byte that is another
+        at = rng.randrange(len(content))
+        return content[:at] + bytes([rng.randrange(256)]) + content[at + 1 :]
+    start, end = rng.choice([span for span in tags if text[span[1] - 2] == "/"])  # an element that is gone
+    return (text[:start] + text[end:]).encode()
+
+
+def refusal(content: bytes, partly: bool) -> str | None:
+    """Return why a file is refused, None if it is imported; any other exception is one."""
+    try:
+        imported(content, "made.xosc", partly=partly)
+    except ProfileError as error:
+        return str(error)
+    return None
+
+
+@pytest.mark.parametrize("name", UNDERSTOOD)
+def test_what_is_understood_is_imported_whole_and_drives(name: str) -> None:
+    found = imported(UNDERSTOOD[name](), "made.xosc")
+    assert not [one for one in found.left if one.changes]
+    assert found.profile.duration_s == 12.0
+    assert [actor.name for actor in found.profile.actors] == ["Lead"]
+    assert len(found.profile.actors[0].acts) == (0 if name == "nothing happens" else 1)
+
+
+@pytest.mark.parametrize("name", NOT_UNDERSTOOD)
+def test_what_is_not_understood_is_refused_by_its_name_and_line(name: str) -> None:
+    element, make = NOT_UNDERSTOOD[name]
+    with pytest.raises(ProfileError, match=rf"^made\.xosc: line \d+: <{element}>: ") as error:
+        imported(make(), "made.xosc")
+    assert "\n" not in str(error.value)
+    found = imported(make(), "made.xosc", partly=True)
+    assert element in [one.element for one in found.left if one.changes]
+
+
+def test_mutations_are_imported_or_refused_with_the_element() -> None:
+    rng, files, refused = random.Random(23), all_files(), 0
+    for number in range(MUTATIONS):
+        content = mutated(files[number % len(files)], rng)
+        for partly in (False, True):
+            told = refusal(content, partly)
+            refused += told is not None
+            assert told is None or re.match(r"made\.xosc: (line \d+: |<\w+>: |[a-z])", told), told
+            assert told is None or "\n" not in told
+    assert refused > 20
+
+
+def test_the_numbers_arrive() -> None:
+    found = imported(UNDERSTOOD["speed by rate"](), "made.xosc")
+    lead = found.profile.actors[0]
+    assert (lead.x_m, lead.y_m, lead.speed_kmh) == pytest.approx((41.4, 0.0, 28.8))  # the box's middle is 1.4 m ahead
+    assert (lead.length_m, lead.width_m, lead.height_m) == (4.5, 1.8, 1.5)
+    act = lead.acts[0]
+    assert (act.at_s, act.speed_kmh, act.accel_mps2) == (4.0, 0.0, 6.0)
+    assert found.profile.remote[0].speed_mps == 10.0
+    path = imported(UNDERSTOOD["trajectory"](), "made.xosc").profile.actors[0].acts[0].trajectory
+    assert [vertex.time_s for vertex in path] == [0.0, 2.0, 4.0]
+    assert path[1].x_m == pytest.approx(61.4)
+    near = imported(UNDERSTOOD["a place"](), "made.xosc").profile.actors[0].acts[0]
+    assert near.of == "Lead"
+    assert near.near is not None
+    assert near.near.radius_m == 4.0
+    later = imported(UNDERSTOOD["a condition and a time"](), "made.xosc").profile.actors[0].acts[0]
+    assert (later.above_mps, later.not_before_s) == (5.0, 3.0)
+
+
+def test_a_parameter_stands_for_its_value() -> None:
+    content = UNDERSTOOD["speed by time"]().replace(
+        b'AbsoluteTargetSpeed value="0.0"', b'AbsoluteTargetSpeed value="$speed"'
+    )
+    assert content != UNDERSTOOD["speed by time"]()
+    assert imported(content, "made.xosc").profile.actors[0].acts[0].speed_kmh == pytest.approx(21.6)
+
+
+def test_it_drives_and_the_lead_brakes() -> None:
+    found = imported(UNDERSTOOD["speed by rate"](), "made.xosc")
+    recorder, columns = drive_scenario(found.profile)
+    gap = recorder.vectors[:, columns.index("ahead.lead_gap_m")]
+    speed = recorder.vectors[:, columns.index("ahead.lead_speed_mps")]
+    assert speed[int(3.9 * 250)] == pytest.approx(8.0)
+    assert speed[int(6.0 * 250)] == pytest.approx(0.0, abs=1e-9)
+    assert gap[1000] > 20.0
+    assert recorder.vectors[1500, columns.index("vehicle.vx_mps")] > 3.0
+
+
+def test_the_consoles_vehicle_is_named_or_asked_for() -> None:
+    content = written().replace(b"Ego", b"Mine")
+    with pytest.raises(ProfileError, match="<Entities>: 0 entities called ego or hero"):
+        imported(content, "made.xosc")
+    assert [actor.name for actor in imported(content, "made.xosc", ego="Mine").profile.actors] == ["Lead"]
