@@ -7,10 +7,10 @@ import numpy as np
 
 from simconsole.values.signals import FAR, SignalState
 from simconsole.world.roads.road_map import RoadMap
-from simconsole.world.roads.running import NONE_RUNNING, RunningNow, changes
+from simconsole.world.roads.running import NONE_RUNNING, Running, RunningNow, changes
 from simconsole.world.rules.approaches import Approach
-from simconsole.world.rules.road_signals import NEVER_S, RoadSignals, SignalShown
-from simconsole.world.rules.timetable import PERMISSIVENESS, state_of
+from simconsole.world.rules.road_signals import NEVER_S, RoadSignals, SignalShown, green_times
+from simconsole.world.rules.timetable import PERMISSIVENESS, greens, state_of
 
 
 class Shown(NamedTuple):
@@ -70,14 +70,21 @@ class RunningSignals(RoadSignals):
             return super().shown(number, tick)
         running = self.now.get(self._names[number])
         links = [self._together(number, (link,)) for link in range(0 if running is None else len(running.letters))]
-        return SignalShown(
-            id=self._names[number],
-            states=[int(one.state) for one in links],
-            next_states=[int(one.next_state) for one in links],
-            change_s=[
-                NEVER_S if one.change_tick >= FAR else max(one.change_tick - tick, 0.0) / self._tick_hz for one in links
-            ],
-        )
+        change_s = [
+            NEVER_S if one.change_tick >= FAR else max(one.change_tick - tick, 0.0) / self._tick_hz for one in links
+        ]
+        times = green_times([self._greens(running, link, tick) for link in range(len(links))], self._tick_hz)
+        states, following = [int(one.state) for one in links], [int(one.next_state) for one in links]
+        return SignalShown(self._names[number], states, following, change_s, *times)
+
+    def _greens(self, running: Running | None, link: int, tick: int) -> list[tuple[float, float]]:
+        if running is None:
+            return []
+        now, known = state_of(running.letters, link), running.switch_tick < FAR
+        phases = running.phases
+        coming = [phases[(running.phase + step) % len(phases)] for step in range(1, len(phases) + 1)]
+        later = [(state_of(one.state, link), float(np.rint(one.duration_s * self._tick_hz))) for one in coming]
+        return greens(now, max(running.switch_tick - tick, 0.0) if known else FAR, later)
 
     def _together(self, signal: int, links: Sequence[int]) -> Shown:
         running = self.now.get(self._names[signal])

@@ -34,6 +34,16 @@ def test_a_phase_without_an_end_never_changes() -> None:
     assert signals.shown(0, 5).change_s == [-1.0, -1.0]
 
 
+def test_the_next_times_of_green_are_told() -> None:
+    signals, _ = running(0, 700.0)
+    shown = signals.shown(0, 500)
+    assert (shown.green_from_s, shown.green_to_s) == ([0.0, 5.0], [2.0, 15.0])
+    assert (shown.later_green_from_s, shown.later_green_to_s) == ([15.0, 38.0], [35.0, 48.0])
+    unknown = running(2, FAR)[0].shown(0, 5)
+    assert (unknown.green_from_s, unknown.green_to_s) == ([-1.0, 0.0], [-1.0, -1.0])
+    assert unknown.later_green_from_s == [-1.0, -1.0]
+
+
 def test_signal_that_nobody_runs_is_unavailable() -> None:
     signals, _ = running(0, 700.0)
     assert signals.of(Approach(1, (0,))).state == SignalState.UNAVAILABLE
