@@ -44,6 +44,7 @@ def autopilot(options: Namespace) -> Outcome:
         delay_s=options.delay_ms / 1000.0,
         tracker=options.tracker,
         plan_hz=options.plan_hz,
+        speed_advice=options.speed_advice,
         gate=Gate(options.lateral_accel, options.lateral_jerk),
         # A console that started this program and is gone closes its pipe; one that is silent is merely held up.
         dead_after_s=math.inf if options.attached else DEAD_AFTER_S,

@@ -83,6 +83,8 @@ class Features(Section, frozen=True, kw_only=True):
     """Start `simconsole autopilot` on this course, as a program of its own that only speaks rosbridge."""
     tracker: Literal["preview", "pure_pursuit", "stanley"] = "preview"
     """How that program steers."""
+    speed_advice: bool = False
+    """Show the driver how fast to come to the next light at green; the autopilot does so. Needs a bridge."""
 
 
 class Outputs(Section, frozen=True, kw_only=True):

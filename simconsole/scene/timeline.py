@@ -30,6 +30,7 @@ _REMEMBERED: Final = (
     "arbitration.refusal",
     "arbitration.notice",
     "events.events",
+    "ahead.traffic_lost",
 )
 _OTHERS: Final = ("x_m", "y_m", "z_m", "yaw_rad", "pitch_rad", "roll_rad")
 NEEDED: Final[tuple[str, ...]] = tuple(
@@ -48,6 +49,8 @@ NEEDED: Final[tuple[str, ...]] = tuple(
     )
 )
 """The columns of a state vector that the scene reads of any vehicle."""
+TRAFFIC_LOST: Final = "ahead.traffic_lost"
+"""Likewise; recordings of earlier versions have no such column."""
 
 
 class Entry(NamedTuple):
@@ -122,6 +125,7 @@ def piece(
     """
     places = {name: index for index, name in enumerate(columns)}
     table = {name: vectors[:, places[name]] for name in NEEDED}
+    table[TRAFFIC_LOST] = vectors[:, places[TRAFFIC_LOST]] if TRAFFIC_LOST in places else np.zeros(len(vectors))
     times_ns = ticks * NS_PER_S // tick_hz
     keep = np.flatnonzero(ticks % max(1, round(tick_hz / rate_hz)) == 0)
     kept = {name: column[keep] for name, column in table.items()}
@@ -180,10 +184,14 @@ def _entries(table: dict[str, Array], times_ns: Ticks, seen: dict[str, float] | 
             (index, Entry(int(times_ns[index]), "WARN", label_of(told[index])))
             for index in changed[told[changed] != 0.0].tolist()
         )
-    failed = _recording_failed(table["events.events"])
-    before = 0.0 if seen is None else float(_recording_failed(np.array([seen["events.events"]]))[0])
-    alarm = notice_label(float(Notice.RECORDING_FAILED))
-    found.extend((index, Entry(int(times_ns[index]), "ERROR", alarm)) for index in changes(failed, before).tolist())
+    was = (0.0, 0.0) if seen is None else (seen["events.events"], seen[TRAFFIC_LOST])
+    failures = (
+        (_recording_failed(table["events.events"]), float(_recording_failed(np.array(was[:1]))[0])),
+        (table[TRAFFIC_LOST], was[1]),
+    )
+    for (failed, before), notice in zip(failures, (Notice.RECORDING_FAILED, Notice.TRAFFIC_LOST), strict=True):
+        alarm = notice_label(float(notice))
+        found.extend((index, Entry(int(times_ns[index]), "ERROR", alarm)) for index in changes(failed, before).tolist())
     for who, column in (("event", "events.events"), ("event on CAN", "events.ecu_events")):
         events = table[column] - Event.RECORDING_FAILED * _recording_failed(table[column])  # lasts: logged once above
         for index in np.flatnonzero(events).tolist():

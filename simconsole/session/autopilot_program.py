@@ -74,6 +74,8 @@ def start_autopilot(
         arguments += ["--delay-ms", f"{delay_ms:g}"]
     if plan_hz:
         arguments += ["--plan-hz", f"{plan_hz:g}"]
+    if session.features.speed_advice:
+        arguments += ["--speed-advice"]
     if bridge.namespace:
         arguments += ["--namespace", bridge.namespace]
     for standard, name in bridge.rename.items():

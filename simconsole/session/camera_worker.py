@@ -46,7 +46,8 @@ def drawn_camera(job: ViewJob, profile: CameraProfile) -> DrawCamera:
 
     def draw(snapshot: Snapshot, users: RoadUsersAt) -> bytes:
         shown = shown_vehicle(snapshot)
-        return picture.jpeg(shown._replace(others=at_moment(users, shown.t_s, snapshot.tick_hz)))
+        others = at_moment(users, shown.t_s, snapshot.tick_hz)
+        return picture.jpeg(shown._replace(others=others, signals=users.signals))
 
     return draw
 

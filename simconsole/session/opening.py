@@ -29,6 +29,7 @@ from simconsole.session.paced import (
     bridge_summary,
     can_summary,
     make_memory,
+    runs_signals,
     share_plans,
     share_road_users,
     wait_for_can,
@@ -183,15 +184,17 @@ def open_realtime(
     opening = stack.enter_context(ExitStack())
     opening.enter_context(undone(lambda: remove_run_folder(folder)))
     memory = make_memory(folder, console)
-    traffic, unpushable = _open_traffic(resolved, console, stack), CollisionEnd(console.platform)
+    traffic, unpushable = _open_traffic(resolved, console, stack, folder), CollisionEnd(console.platform)
     plans = share_plans(resolved.session, folder)
     recorder = LogRecorder(log, memory.acts.take, traffic, plans)
     if traffic is not None:
-        share_road_users(traffic, folder)
+        share_road_users(traffic, folder, runs_signals(resolved))
     ecu = add_can_memory(resolved, console, folder)
     supervisor = SupervisorHandle(folder, worker_specs(resolved, console, folder, bundle, drive))
     programs = _started(supervisor, memory, stack)
     opening.close()  # from here on the supervisor removes the folder, however the core ends
+    if traffic is not None:
+        traffic.await_worker(lambda: _lives(supervisor, interrupt.check))
     address = _await_workers(resolved, folder, programs, (drive, token), supervisor, interrupt.check)
     with_window = resolved.session.outputs.hud is not None
     seating = open_seating(resolved, console, stack, memory.keys if with_window else None)
@@ -230,8 +233,10 @@ def open_realtime(
     )
 
 
-def _open_traffic(resolved: ResolvedSession, console: Console, stack: ExitStack) -> TrafficSource | None:
-    traffic = open_traffic(resolved, console)
+def _open_traffic(
+    resolved: ResolvedSession, console: Console, stack: ExitStack, run_folder: Path | None = None
+) -> TrafficSource | None:
+    traffic = open_traffic(resolved, console, run_folder)
     if traffic is not None:
         stack.callback(traffic.close)
     return traffic
@@ -283,8 +288,7 @@ def _await_workers(
     session = resolved.session
 
     def alive() -> bool:
-        check()
-        return supervisor.alive()
+        return _lives(supervisor, check)
 
     address, bridge = None, session.outputs.bridge
     if bridge is not None:
@@ -294,6 +298,11 @@ def _await_workers(
     if session.outputs.can is not None:
         wait_for_can(folder, lambda: alive() and not supervisor.counters().get("canbus"))
     return address
+
+
+def _lives(supervisor: SupervisorHandle, check: Callable[[], None]) -> bool:
+    check()
+    return supervisor.alive()
 
 
 def _idle(snapshot: Snapshot) -> None:

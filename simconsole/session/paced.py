@@ -14,10 +14,14 @@ from simconsole.processes.shared_memory import EventCounters, Ring, TextQueue
 from simconsole.processes.worker import Worker, WorkerSpec
 from simconsole.profiles.session import SessionProfile
 from simconsole.profiles.vehicle import TurtlebotProfile
+from simconsole.profiles.world import RoadsProfile
 from simconsole.recording.log_header import PLANS
 from simconsole.session.camera_worker import CameraWorker
 from simconsole.session.external_view import display_settings
-from simconsole.session.traffic_source import TrafficSource
+from simconsole.session.sumo.sumo_memory import signal_bytes, signals_within
+from simconsole.session.sumo.sumo_worker import NAME as SUMO
+from simconsole.session.sumo.sumo_worker import SumoWorker
+from simconsole.session.traffic_source import ShowRoadUsers, TrafficSource, ego_box
 from simconsole.session.view_job import save_view_job, view_job
 from simconsole.session.worker_programs import (
     ACTS,
@@ -33,6 +37,7 @@ from simconsole.session.worker_programs import (
     PLAN,
     ROAD_USERS,
     ROAD_USERS_CAPACITY,
+    SIGNALS,
     SLOT_CAPACITY,
     SNAPSHOT_CAPACITY,
     SNAPSHOTS,
@@ -52,7 +57,11 @@ from simconsole.values.protocols import CommandSource, NobodyCommands
 from simconsole.values.signals import NEVER_TICKS, NO_COMMAND, EventInput, RemoteCommand
 from simconsole.values.state_vector import LAYOUT, Snapshot
 from simconsole.values.units import NS_PER_S
-from simconsole.world.traffic.road_users import RECORD_WIDTH, to_record
+from simconsole.world.kinds.worlds import open_world
+from simconsole.world.roads.road_map import RoadMap
+from simconsole.world.roads.road_world import roads_of
+from simconsole.world.roads.running import RunningNow
+from simconsole.world.traffic.road_users import RECORD_WIDTH, RoadUsersAt, to_record
 
 START_PATIENCE_S = 60.0
 """How long a worker may take to be ready: a machine that is busy, and compiles for the first time, takes this long."""
@@ -180,14 +189,39 @@ def add_can_memory(resolved: ResolvedSession, console: Console, folder: Path) ->
     return CommandPort(slot, EventCounters.create(folder / CAN_EVENTS), console.tick_hz)
 
 
-def share_road_users(traffic: TrafficSource, folder: Path) -> None:
-    """Give every worker the road users, in a ring of their own.
+def runs_signals(resolved: ResolvedSession) -> RoadMap | None:
+    """Return the map whose signals another simulator runs; None: they run their own programs."""
+    traffic = resolved.session.environment.traffic
+    if traffic is None or traffic.sumo is None or not isinstance(resolved.world, RoadsProfile):
+        return None
+    roads = roads_of(open_world(resolved.world))
+    return None if roads is None else roads.road_map
+
+
+def share_road_users(traffic: TrafficSource, folder: Path, signals_of: RoadMap | None = None) -> None:
+    """Give every worker the road users, in a ring of their own; and the signals that another simulator runs.
 
     Raises:
         WorkerError: it cannot be made.
     """
     ring = Ring.create(folder / ROAD_USERS, RECORD_WIDTH, ROAD_USERS_CAPACITY)
+    if signals_of is not None:
+        traffic.show_to(_share_signals(folder, signal_bytes(signals_of)))
     traffic.show_to(lambda at: ring.write(to_record(at.users), at.tick))
+
+
+def _share_signals(folder: Path, room: int) -> ShowRoadUsers:
+    """Return what shows the signals to every worker whenever one has changed."""
+    slot = ByteSlot.create(folder / SIGNALS, room)
+    told: RunningNow | None = None
+
+    def show(at: RoadUsersAt) -> None:
+        nonlocal told
+        if at.signals is not told:
+            told = at.signals
+            slot.write(at.tick, signals_within(told, room))
+
+    return show
 
 
 def keeps_plans(session: SessionProfile) -> bool:
@@ -229,8 +263,17 @@ def worker_specs(
     """
     outputs, tick_hz = resolved.session.outputs, console.tick_hz
     has_bridge, has_can = outputs.bridge is not None, outputs.can is not None
-    has_traffic = resolved.session.environment.traffic is not None
+    traffic = resolved.session.environment.traffic
+    has_traffic = traffic is not None
     workers: dict[str, Worker] = {}
+    if traffic is not None and traffic.sumo is not None and isinstance(resolved.world, RoadsProfile):
+        workers[SUMO] = SumoWorker(
+            traffic=traffic,
+            world=resolved.world,
+            tick_hz=tick_hz,
+            ego=ego_box(console.platform.initial_vehicle, console.platform),
+            duration_s=resolved.session.scenario.duration_s,
+        )
     if outputs.bridge is not None:
         workers["bridge"] = BridgeWorker(
             profile=outputs.bridge,

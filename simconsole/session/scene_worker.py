@@ -18,7 +18,7 @@ from simconsole.profiles.vehicle import CarProfile, TurtlebotProfile
 from simconsole.profiles.view import SceneProfile
 from simconsole.scene.entities import Dimensions
 from simconsole.scene.operator_acts import act_entry
-from simconsole.scene.timeline import NEEDED, Entry, ShownVehicle
+from simconsole.scene.timeline import NEEDED, TRAFFIC_LOST, Entry, ShownVehicle
 from simconsole.scene.viewer.follow import Ports, Shot, follow
 from simconsole.scene.viewer.job import SceneSource, job_of
 from simconsole.scene.wheel_shapes import WHEEL_COLUMNS, ShownWheel, ShownWheels
@@ -69,7 +69,7 @@ def scene_columns(resolved: ResolvedSession, columns: tuple[str, ...]) -> tuple[
     bridge = resolved.session.outputs.bridge
     if isinstance(resolved.vehicle, TurtlebotProfile) or (bridge is not None and bridge.camera is not None):
         return columns
-    return tuple(dict.fromkeys((*NEEDED, *(name for name in WHEEL_COLUMNS if name in columns))))
+    return tuple(dict.fromkeys((*NEEDED, *(name for name in (TRAFFIC_LOST, *WHEEL_COLUMNS) if name in columns))))
 
 
 def shown_wheels(profile: CarProfile) -> ShownWheels:

@@ -1,6 +1,7 @@
 """Traffic as a source: stepped every fixed number of ticks, its result recorded as an input and shown to everybody."""
 
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 from simconsole.profiles.files.world_files import read_map
@@ -19,6 +20,7 @@ from simconsole.values.trigonometry import direction
 from simconsole.world.kinds.worlds import open_map, open_world
 from simconsole.world.roads.road_map import Array
 from simconsole.world.roads.road_world import Roads, roads_of
+from simconsole.world.roads.running import NONE_RUNNING
 from simconsole.world.route import Route
 from simconsole.world.rules.approaches import Ahead, ahead_of_lanes
 from simconsole.world.rules.owing import Owing
@@ -55,6 +57,17 @@ class Closing(Protocol):
         """End it, or this drive's part in it."""
 
 
+@runtime_checkable
+class Awaited(Protocol):
+    """Traffic that is moved in a process of its own."""
+
+    def road_users(self) -> Array:
+        """Return where everybody is."""
+
+    def wait(self, alive: Callable[[], bool]) -> None:
+        """Wait until it has begun."""
+
+
 class OtherSignals(NamedTuple):
     """The signals of a map that another simulator runs, as inputs of the tick."""
 
@@ -65,6 +78,8 @@ class OtherSignals(NamedTuple):
     def seen(self, lane: int) -> tuple[float, float, float]:
         """Return the last fields of `AheadInput` for a vehicle on a lane of the map, -1: on none."""
         ahead = self.ahead[lane] if lane >= 0 else None
+        if not self.running.now:  # it has not said anything yet, or no more: the map's own programs
+            return 0.0, 0.0, FAR
         if ahead is None:
             return -1.0, 0.0, FAR
         shown = self.running.of(ahead.approach)
@@ -97,7 +112,7 @@ class TrafficSource:
         self._platform = platform
         self._period_ticks = period_ticks
         self._owing = owing
-        self._newest = RoadUsersAt(0, traffic.road_users())
+        self._newest = self._of(0, traffic.road_users())
         self._ahead = self._look(ego_box(platform.initial_vehicle, platform), 0, -1)
         self._fresh = True
         self._crash = NO_CRASH
@@ -109,6 +124,15 @@ class TrafficSource:
         self._shown.append(show)
         show(self._newest)
 
+    def await_worker(self, alive: Callable[[], bool]) -> None:
+        """Wait until those who move the road users in another process have begun. Raises as `SumoPort.wait`."""
+        if isinstance(self._traffic, Awaited):
+            self._traffic.wait(alive)
+            self._newest = self._of(0, self._traffic.road_users())
+            self._ahead = self._look(ego_box(self._platform.initial_vehicle, self._platform), 0, -1)
+            for show in self._shown:
+                show(self._newest)
+
     def newest(self) -> RoadUsersAt:
         """Return the newest result."""
         return self._newest
@@ -119,7 +143,7 @@ class TrafficSource:
             return
         vehicle = snapshot.vehicle
         ego = ego_box(vehicle, self._platform)
-        self._newest = RoadUsersAt(snapshot.tick, self._traffic.step(ego))
+        self._newest = self._of(snapshot.tick, self._traffic.step(ego))
         self._fresh = True
         self._ahead = self._look(ego, snapshot.tick, int(snapshot.situation.lane))
         self._crash = self._crashes.step(vehicle, ego, self._newest.users)
@@ -132,6 +156,14 @@ class TrafficSource:
     def ahead(self) -> AheadInput:
         """Return whom the vehicle follows and lets pass, as of the last step."""
         return self._ahead
+
+    def _of(self, tick: int, users: Array) -> RoadUsersAt:
+        """Return a step's result, with the signals that came with it."""
+        if self._signals is None:
+            return RoadUsersAt(tick, users)
+        if self.lost() is not None:
+            self._signals.running.take(NONE_RUNNING)
+        return RoadUsersAt(tick, users, self._signals.running.now)
 
     def _look(self, ego: Box, tick: int, lane: int) -> AheadInput:
         found = self._leaders.find(ego, self._newest.users)
@@ -183,8 +215,10 @@ class TrafficSource:
         return {"traffic": {"road_users": len(self._newest.users), "collisions": self.collisions, **error, **lost}}
 
 
-def open_traffic(resolved: ResolvedSession, console: Console) -> TrafficSource | None:
+def open_traffic(resolved: ResolvedSession, console: Console, run_folder: Path | None = None) -> TrafficSource | None:
     """Return the traffic of a session, None where it has none.
+
+    SUMO runs in this process, or beside it as the profile says; in a drive with a `run_folder` in a worker.
 
     Raises:
         ProfileError: its world is no road map, or its period no whole number of ticks.
@@ -204,7 +238,7 @@ def open_traffic(resolved: ResolvedSession, console: Console) -> TrafficSource |
     assert roads is not None, "a road map has roads"
     period_ticks = profile.period_ms * console.tick_hz // 1000
     if profile.sumo is not None:
-        return _of_sumo(resolved, profile, console, route, roads, period_ticks)
+        return _of_sumo(resolved, profile, console, route, roads, period_ticks, run_folder)
     traffic = Traffic(
         open_map(resolved.world),
         profile,
@@ -224,23 +258,30 @@ def _of_sumo(
     route: Route,
     roads: Roads,
     period_ticks: int,
+    run_folder: Path | None,
 ) -> TrafficSource:
     """Return SUMO's traffic; raises ProfileError as open_traffic, and where SUMO is missing or refuses."""
+    from simconsole.session.sumo.sumo_port import SumoPort
     from simconsole.world.sumo_traffic.sumo_traffic import SumoTraffic, Surroundings
 
     assert isinstance(resolved.world, RoadsProfile)
     assert console.roads is not None  # such a world has rules
     platform, tick_hz = console.platform, console.tick_hz
-    around = Surroundings(
-        road_map=roads.road_map,
-        net=read_map(resolved.world.map),
-        legs=roads.legs,
-        tick_hz=tick_hz,
-        ego=ego_box(platform.initial_vehicle, platform),
-        duration_s=resolved.session.scenario.duration_s,
-        ground=open_world(resolved.world).ground,
-    )
-    traffic = SumoTraffic(profile, around)
+    ego = ego_box(platform.initial_vehicle, platform)
+    traffic: SumoPort | SumoTraffic
+    if run_folder is not None:
+        traffic = SumoPort(profile, roads.road_map, tick_hz, run_folder, ego)
+    else:
+        around = Surroundings(
+            road_map=roads.road_map,
+            net=read_map(resolved.world.map),
+            legs=roads.legs,
+            tick_hz=tick_hz,
+            ego=ego,
+            duration_s=resolved.session.scenario.duration_s,
+            ground=open_world(resolved.world).ground,
+        )
+        traffic = SumoTraffic(profile, around)
     owing = Owing(roads.road_map, roads.legs, route, tick_hz, traffic.signals.state)
     signals = OtherSignals(traffic.signals, ahead_of_lanes(roads.road_map, roads.legs), console.roads)
     return TrafficSource(traffic, platform, period_ticks, route, owing, signals)

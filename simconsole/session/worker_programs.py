@@ -14,7 +14,7 @@ import numpy as np
 
 from simconsole.control.requests.refusals import SteeringLimit
 from simconsole.hud.view import HudSettings
-from simconsole.processes.byte_slot import ByteSlot
+from simconsole.processes.byte_slot import ByteSlot, Piece
 from simconsole.processes.receipts import Receipts
 from simconsole.processes.shared_memory import EventCounters, Record, Ring, TextQueue
 from simconsole.processes.worker import Worker
@@ -29,6 +29,7 @@ from simconsole.values.labels import LINK_DOWN
 from simconsole.values.planned_path import PlannedPath, to_bytes
 from simconsole.values.signals import RemoteCommand
 from simconsole.values.state_vector import LAYOUT, Snapshot
+from simconsole.world.roads.running import NONE_RUNNING, RunningNow, changed
 from simconsole.world.traffic.road_users import NOBODY_AT_ALL, RoadUsersAt, from_record
 
 if TYPE_CHECKING:
@@ -47,6 +48,7 @@ CAN_COMMAND: Final = "can.command"
 CAN_EVENTS: Final = "can.events"
 CAN_STATUS: Final = "can.json"
 ROAD_USERS: Final = "road_users"
+SIGNALS: Final = "signals"
 LATENCY: Final = "latency"
 VIEW_JOB: Final = "view.npz"
 CAMERA: Final = "camera"
@@ -87,7 +89,7 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
         from simconsole.session.external_view import external_view
         from simconsole.session.robots import robot_at_work
         from simconsole.session.view_job import load_view_job
-        from simconsole.world.kinds.worlds import road_signals, route_points, shown_map
+        from simconsole.world.kinds.worlds import road_signals, route_points, running_signals, shown_map
 
         profile = self.profile
         receipts = Receipts(folder / f"{LATENCY}.bridge.json")
@@ -96,12 +98,15 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
 
         acts = TextQueue.open(folder / ACTS, writable=True)
 
+        users = RoadUsersRing(folder) if self.has_traffic else None
         around = Surroundings(
             route=route_points(self.world),
             shown_map=shown_map(self.world),
-            signals=road_signals(self.world, self.tick_hz),
+            signals=road_signals(self.world, self.tick_hz)
+            if users is None
+            else running_signals(self.world, self.tick_hz, users.signals),
             camera=None if profile.camera is None else _shots(folder),
-            road_users=RoadUsersRing(folder).newest if self.has_traffic else None,
+            road_users=None if users is None else users.newest,
             view=NO_VIEW if self.display is None else external_view(load_view_job(folder / VIEW_JOB), self.display),
             robot=robot_at_work(self.vehicle, self.world),
             steering=self.steering,
@@ -225,21 +230,27 @@ class HudWorker(Worker, frozen=True, kw_only=True):
 
 
 class RoadUsersRing:
-    """A worker's view of the road users, in a second ring of the run folder: how many, then the users."""
+    """A worker's view of the road users, in a second ring of the run folder: how many, then the users.
+
+    Signals that another simulator runs stand in a slot of their own, where there is one.
+    """
 
     def __init__(self, folder: Path) -> None:
         self._ring = Ring.open(folder / ROAD_USERS)
+        self._signals = ByteSlot.open(folder / SIGNALS) if (folder / SIGNALS).exists() else None
+        self._piece: Piece | None = None
+        self._running: RunningNow = NONE_RUNNING
         self._seen = 0
 
     def newest(self) -> RoadUsersAt:
         """Return those of the newest step; nobody before the first."""
         record = self._ring.latest()
-        return NOBODY_AT_ALL if record is None else _road_users_of(record)
+        return NOBODY_AT_ALL if record is None else self._of(record)
 
     def newest_two(self) -> tuple[RoadUsersAt | None, RoadUsersAt]:
         """Return those of the last step but one, None where there is none, and those of the newest."""
         records = self._ring.since(self._ring.newest - 2)[-2:]
-        steps = [_road_users_of(record) for record in records]
+        steps = [self._of(record) for record in records]
         return (steps[0] if len(steps) > 1 else None), (steps[-1] if steps else NOBODY_AT_ALL)
 
     def since(self) -> list[RoadUsersAt]:
@@ -247,11 +258,17 @@ class RoadUsersRing:
         records = self._ring.since(self._seen)
         if records:
             self._seen = records[-1].number
-        return [_road_users_of(record) for record in records]
+        return [self._of(record) for record in records]
 
+    def signals(self) -> RunningNow:
+        """Return the signals that another simulator runs; none where they run their own programs."""
+        piece = None if self._signals is None else self._signals.newest()
+        if piece is not None and piece is not self._piece:
+            self._piece, self._running = piece, changed(NONE_RUNNING, piece.content)
+        return self._running
 
-def _road_users_of(record: Record) -> RoadUsersAt:
-    return RoadUsersAt(record.stamp, from_record(record.values))
+    def _of(self, record: Record) -> RoadUsersAt:
+        return RoadUsersAt(record.stamp, from_record(record.values), self.signals())
 
 
 def _view_scene(folder: Path) -> "ViewScene":

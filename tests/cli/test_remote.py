@@ -44,9 +44,9 @@ def test_a_console_that_is_held_up_keeps_the_autopilot_that_it_has_started(
     monkeypatch.setattr(remote, "follow_parent", lambda patience_s: Parent())
     options = Namespace(attached=attached, url="ws://127.0.0.1:9", course="urban", namespace="", rename=[], wait=0.0)
     options.certificate, options.vehicle, options.delay_ms, options.tracker = None, "hatchback", 0.0, "stanley"
-    options.lateral_accel, options.lateral_jerk, options.plan_hz = 5.0, 2.0, 4.0
+    options.lateral_accel, options.lateral_jerk, options.plan_hz, options.speed_advice = 5.0, 2.0, 4.0, attached
     autopilot(options)
-    assert (told["gate"], told["plan_hz"]) == ((5.0, 2.0), 4.0)
+    assert (told["gate"], told["plan_hz"], told["speed_advice"]) == ((5.0, 2.0), 4.0, attached)
     assert told["dead_after_s"] == dead_after_s
 
 

@@ -85,6 +85,16 @@ def test_a_failed_recording_is_told_once_beside_the_other_events(cuts: list[int]
     ]
 
 
+@pytest.mark.parametrize("cuts", [[], [1500], [2000, 2001]])
+def test_traffic_that_fails_is_told_once(cuts: list[int]) -> None:
+    table, memory, entries = rows(COUNT), Memory(), []
+    table[2000:, COLUMNS.index("ahead.traffic_lost")] = 1.0
+    for start, end in pairwise([0, *cuts, COUNT]):
+        added, memory = piece(table[start:end], COLUMNS, np.arange(start + 1, end + 1), TICK_HZ, 50, memory)
+        entries += [(one.t_ns // NS_PER_TICK, one.level) for one in added.entries if "traffic" in one.text]
+    assert entries == [(2001, "ERROR")]
+
+
 def test_the_driven_path_is_whole_and_knows_its_mode(whole: Piece) -> None:
     strips = whole.strips
     for before, after in pairwise(strips):

@@ -1,4 +1,5 @@
 import pytest
+from msgspec.structs import replace
 
 from simconsole.cli.main import parser
 from simconsole.processes.lifetimes import DRIVE_VARIABLE, close_pipe, end
@@ -69,3 +70,12 @@ def test_it_is_told_of_the_whole_way_there_and_back_however_long(monkeypatch: py
     assert [one.plan_hz for one in given] == [0.0, 0.0, 5.0]
     told = [one.delay_ms for one in given[:2]]
     assert told == [50.0, 3.0 * LONGEST_MS]
+
+
+def test_it_follows_advice_where_the_session_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    started: list[list[str]] = []
+    monkeypatch.setattr("simconsole.session.autopilot_program.spawn", lambda words, environment: started.append(words))
+    advised = replace(SESSION, features=replace(SESSION.features, speed_advice=True))
+    for session in (SESSION, advised):
+        start_autopilot("ws://127.0.0.1:9", session, BridgeProfile(), "nonce", None)
+    assert [parser().parse_args(words[2:]).speed_advice for words in started] == [False, True]

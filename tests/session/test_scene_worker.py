@@ -1,7 +1,7 @@
 """What a scene's process is told of a session, and what it makes of it."""
 
 from simconsole.profiles.view import SceneProfile
-from simconsole.scene.timeline import NEEDED
+from simconsole.scene.timeline import NEEDED, TRAFFIC_LOST
 from simconsole.scene.viewer.job import job_of
 from simconsole.scene.wheel_shapes import WHEEL_COLUMNS
 from simconsole.session.resolution import load_session, override, resolve
@@ -56,5 +56,5 @@ def test_of_a_car_only_what_is_shown_is_read() -> None:
     resolved = resolve(load_session("demo"))
     columns = assemble(resolved, plain)[0].columns
     read = scene_columns(resolved, columns)
-    assert set(read) == {*NEEDED, *WHEEL_COLUMNS}
+    assert set(read) == {*NEEDED, TRAFFIC_LOST, *WHEEL_COLUMNS}
     assert len(read) < len(columns) / 2

@@ -5,8 +5,18 @@ from pathlib import Path
 
 import numpy as np
 
+from simconsole.processes.byte_slot import ByteSlot
 from simconsole.processes.shared_memory import Ring
-from simconsole.session.worker_programs import ROAD_USERS, ROAD_USERS_CAPACITY, CanWatch, LinkWatch, RoadUsersRing
+from simconsole.session.worker_programs import (
+    ROAD_USERS,
+    ROAD_USERS_CAPACITY,
+    SIGNALS,
+    CanWatch,
+    LinkWatch,
+    RoadUsersRing,
+)
+from simconsole.values.signals import FAR
+from simconsole.world.roads.running import NONE_RUNNING, Running, changes
 from simconsole.world.traffic.road_users import FIELDS, RECORD_WIDTH, to_record
 
 
@@ -69,3 +79,18 @@ def test_road_users_reach_a_worker_whole_and_in_order(tmp_path: Path) -> None:
     assert worker.newest().users.tolist() == [[3.0] * FIELDS] * 3
     assert [(at.tick, len(at.users)) for at in worker.since()] == [(10, 1), (20, 2), (30, 3)]
     assert worker.since() == []
+
+
+def test_signals_of_another_simulator_come_with_the_road_users(tmp_path: Path) -> None:
+    ring = Ring.create(tmp_path / ROAD_USERS, RECORD_WIDTH, ROAD_USERS_CAPACITY)
+    slot = ByteSlot.create(tmp_path / SIGNALS, 1000)
+    follower = RoadUsersRing(tmp_path)
+    assert follower.newest().signals == {}
+    now = {"a": Running("Gr", (), 0, FAR)}
+    slot.write(3, changes(NONE_RUNNING, now) or b"")
+    ring.write(to_record(np.ones((2, FIELDS))), 3)
+    assert follower.newest().signals == now
+    assert follower.newest().signals is follower.newest_two()[1].signals
+    assert [at.signals for at in follower.since()] == [now]
+    slot.write(4, b"{}")
+    assert follower.signals() == {}

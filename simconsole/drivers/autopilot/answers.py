@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from typing import Final
 
+from simconsole.drivers.autopilot.advised import Advised
 from simconsole.drivers.autopilot.others import Others
 from simconsole.drivers.autopilot.yields import Yields
 from simconsole.drivers.path_tracker.approach import why_not
@@ -44,8 +45,13 @@ class Answers:
         lights: SignalStops | None = None,
         others: Others | None = None,
         yields: Yields | None = None,
+        advised: Advised | None = None,
     ) -> None:
-        """Ask `tracker`, tell people by `say`, obey `lights` and `yields`, and keep behind `others`."""
+        """Ask `tracker`, tell people by `say`, obey `lights` and `yields`, and keep behind `others`.
+
+        `advised` is who follows speed advice; None: nobody does.
+        """
+        self._advised = advised
         self._tracker, self._say, self._lights, self._others, self._yields = tracker, say, lights, others, yields
         self._obeys = lights is not None or yields is not None
         self.statistics = TrackingStatistics()
@@ -63,6 +69,11 @@ class Answers:
         self._newest_s = stamp_s
         if tracker.s_m is not None and self._obeys:
             tracker.along.stop = self._stop(tracker.s_m, seen.vx_mps, stamp_s)
+            if self._advised is not None and self._lights is not None:
+                approach = self._lights.approach(tracker.s_m)
+                tracker.along.advised_mps = self._advised.target_mps(
+                    approach, tracker.s_m, seen.vx_mps, tracker.along.profile, stamp_s
+                )
         if self._others is not None:
             tracker.along.leader = self._others.leader(seen, stamp_s)
         command = tracker.step(seen, engaged, stamp_s)

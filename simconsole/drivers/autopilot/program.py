@@ -12,6 +12,7 @@ from typing import Any, Final, NamedTuple
 
 from simconsole.bridge.client.bridge_client import BridgeClient
 from simconsole.bridge.protocol.backoff import DEAD_AFTER_S
+from simconsole.drivers.autopilot.advised import Advised
 from simconsole.drivers.autopilot.answers import Answers, make_tracker
 from simconsole.drivers.autopilot.lights import SIGNALS, SIGNALS_TYPE, lights_of, signal_stops
 from simconsole.drivers.autopilot.motion import Odometry, motion_of
@@ -77,6 +78,7 @@ def run(
     gate: Gate = GATE,
     dead_after_s: float = DEAD_AFTER_S,
     plan_hz: float = 0.0,
+    speed_advice: bool = False,
 ) -> dict[str, Any]:
     """Drive until the server ends the session, is gone for `patience_s`, or `stop()` is true; return statistics.
 
@@ -96,6 +98,7 @@ def run(
         gate: what the console lets pass of it.
         dead_after_s: how long the server may be silent before it counts as gone.
         plan_hz: how often a second it tells what it plans, in the odometry's time; 0: never.
+        speed_advice: come to lights at green where a legal speed does so, by what their messages tell.
 
     Raises:
         ProfileError: the world cannot be read.
@@ -111,6 +114,7 @@ def run(
         lights,
         others,
         yields(world, car, lights),
+        Advised() if speed_advice else None,
     )
     with BridgeClient(
         url, token=token, certificate=certificate, drive=drive, until_good_bye=True, dead_after_s=dead_after_s

@@ -11,6 +11,7 @@ from typing import Final, NamedTuple
 from simconsole.drivers.path_tracker.speed_profile import SpeedProfile, Stop
 from simconsole.values.signals import SignalState
 from simconsole.world.rules.approaches import StopLine
+from simconsole.world.rules.speed_advice import Greens
 
 AHEAD_M: Final = 150.0
 """A line further away than this asks for nothing yet."""
@@ -46,6 +47,15 @@ class Light(NamedTuple):
     next_state: int
     change_s: float  # until the next state; negative: never
     stamp_s: float
+    greens_s: tuple[tuple[float, float], ...] = ()  # the next times of green, from then; the end infinite: not known
+
+
+class Approach(NamedTuple):
+    """The way to the next line."""
+
+    line_m: float  # where base_link is then
+    left_m: float
+    greens: Greens | None  # None: nothing was told
 
 
 class SignalStops:
@@ -70,6 +80,16 @@ class SignalStops:
         """Return what a link was told to show last, by the places of signal and link in the map; red if nothing was."""
         light = self._shown.get((self._ids[signal], link))
         return SignalState.STOP_AND_REMAIN if light is None else light.state
+
+    def approach(self, s_m: float) -> Approach | None:
+        """Return the next line, and what its light was told to do; None: there is none ahead."""
+        front_m = s_m + self._front_m
+        line = next((line for line in self._lines if line.s_m > front_m), None)
+        if line is None:
+            return None
+        light = self._shown.get((self._ids[line.signal], line.link))
+        greens = None if light is None else Greens(light.greens_s, light.stamp_s)
+        return Approach(line.s_m - self._front_m, line.s_m - front_m, greens)
 
     def stop(self, s_m: float, speed_mps: float, plan: SpeedProfile, now_s: float) -> Stop | None:
         """Return where base_link is to stop, None to drive on, while it is at `s_m` and follows `plan`."""

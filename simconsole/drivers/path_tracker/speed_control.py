@@ -8,6 +8,7 @@ from simconsole.drivers.path_tracker.speed_profile import Stop, plan_speed, stop
 from simconsole.drivers.path_tracker.tracker_settings import Comfort
 from simconsole.values.kernels import approach, clip
 from simconsole.world.route import Route
+from simconsole.world.rules.speed_advice import DOWN_MPS2
 
 _GAIN_1PS: Final = 1.2
 _LEAD_S: Final = 0.15
@@ -49,6 +50,8 @@ class SpeedControl:
         """Where to stop before the course's end, for as long as it is so."""
         self.leader: Leader | None = None
         """Whom to keep behind."""
+        self.advised_mps: float | None = None
+        """Not to drive faster than this, for a light to come; None: nothing is advised."""
         self._comfort, self._period_s = comfort, period_s
         self._following = Following(
             gap_m=_GAP_M,
@@ -73,6 +76,9 @@ class SpeedControl:
         if self.stop is not None:
             most = max(most, self.stop.brake_mps2 + _CORRECTION_MPS2)
         wanted = clip(wanted, -most, self._comfort.accelerate_mps2)
+        if self.advised_mps is not None and self.advised_mps < target:
+            target = self.advised_mps
+            wanted = min(wanted, max(_GAIN_1PS * (target - speed_mps), -DOWN_MPS2))
         jerk_mps3 = _JERK_MPS3
         if self.leader is not None:
             allowed = following_mps2(self.leader.gap_m, self.leader.speed_mps, speed_mps, self._following)

@@ -71,7 +71,8 @@ class _Traffic:
             self._before, self._now, self._next = self._now, self._next, next(self._steps, None)
         if self._now is None:
             return shown
-        return shown._replace(others=at_moment(self._now, shown.t_s, self._tick_hz, self._before))
+        others = at_moment(self._now, shown.t_s, self._tick_hz, self._before)
+        return shown._replace(others=others, signals=self._now.signals)
 
 
 def _snapshots(recording: Recording) -> Iterator[Snapshot]:

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from simconsole.values.signals import Mode
 from simconsole.values.state_vector import Snapshot
+from simconsole.world.roads.running import NONE_RUNNING, RunningNow
 from simconsole.world.traffic.road_users import RoadUser
 
 
@@ -27,6 +28,7 @@ class ShownVehicle(NamedTuple):
     others: tuple[RoadUser, ...] = ()
     tick: int = 0  # traffic lights show what they show at it
     tick_hz: int = 1
+    signals: RunningNow = NONE_RUNNING  # unless another simulator runs them
 
 
 def shown_vehicle(snapshot: Snapshot) -> ShownVehicle:

@@ -200,7 +200,7 @@ class Renderer:
         seen &= away[:, 0] * np.cos(yaw) + away[:, 1] * np.sin(yaw) > 0.0
         if not seen.any():
             return
-        for place, lamp in self._lamps.lit(shown.tick, shown.tick_hz):
+        for place, lamp in self._lamps.lit(shown.tick, shown.tick_hz, shown.signals):
             if seen[place]:
                 light = self._scene.lights[place]
                 at = np.array((light.x_m, light.y_m, self._scene.height_m(light.x_m, light.y_m)))

@@ -90,7 +90,7 @@ class ViewWindow:
             if motion.road_users is not None:
                 now_s, tick_hz = self._shown.t_s, motion.newer.tick_hz
                 others = at_moment(motion.road_users, now_s, tick_hz, motion.road_users_before)
-                self._shown = self._shown._replace(others=others)
+                self._shown = self._shown._replace(others=others, signals=motion.road_users.signals)
         elif snapshot is not None:
             self._shown = shown_vehicle(snapshot)
         self._picture.draw(self._target, self._shown, content, aids)

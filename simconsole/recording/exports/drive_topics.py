@@ -29,6 +29,7 @@ from simconsole.values.state_vector import INPUT_WIDTH, LAYOUT, PLATFORM_AT, Sna
 from simconsole.values.units import tick_time_ns
 from simconsole.vehicle.turtlebot.robot_state import ROBOT
 from simconsole.world.rules.road_signals import RoadSignals
+from simconsole.world.rules.running_signals import RunningSignals
 from simconsole.world.traffic.road_users import NOBODY_AT_ALL
 from simconsole.world.world import NO_MAP, ShownMap
 
@@ -67,8 +68,8 @@ class DriveTopics:
     ) -> None:
         """Take names and rates of the session's bridge, or of a bridge as shipped where it has none.
 
-        `route` is what /route shows, `signals` are the world's traffic lights, `shown` its map; `robot` makes the
-        topics of what was driven if it was one.
+        `route` is what /route shows, `signals` are the world's traffic lights or those that another simulator ran,
+        `shown` its map; `robot` makes the topics of what was driven if it was one.
 
         Raises:
             ProfileError: the session's bridge renames or rates a topic that does not exist.
@@ -82,6 +83,7 @@ class DriveTopics:
             profile = msgspec.structs.replace(profile, rates_hz={**profile.rates_hz, ODOMETRY: session.mode.control_hz})
         self._outputs = Outputs(self.registry, profile, route=route, signals=signals, shown_map=shown, robot=robot)
         self._robot = robot
+        self._signals = signals if isinstance(signals, RunningSignals) else None
         outputs = (*view_topics(self.registry, profile), *self._outputs.topics())
         if profile.camera is not None:
             outputs = (*outputs, *CameraTopics(self.registry, profile.camera, lambda: None).topics())
@@ -114,6 +116,8 @@ class DriveTopics:
                 yield self._message(name, self._command_types[name], False, sent_ns, message)
             while step is not None and step.tick <= snapshot.tick:
                 self._road_users, step = step, next(steps, None)
+                if self._signals is not None:
+                    self._signals.take(self._road_users.signals)
             if snapshot.tick % self._step_ticks:
                 continue
             published = None

@@ -18,7 +18,7 @@ from simconsole.recording.exports.foxglove import foxglove_layout
 from simconsole.recording.own_signals import with_own_signals
 from simconsole.recording.reading import Recording
 from simconsole.values.errors import RecordingError
-from simconsole.world.kinds.worlds import road_signals, route_points, shown_map
+from simconsole.world.kinds.worlds import road_signals, route_points, running_signals, shown_map
 
 TOPIC_FORMATS: Final = {"mcap": "mcap_file", "rosbag2": "rosbag2_folder"}
 TABLE_FORMATS: Final = {"csv": "csv_file", "parquet": "parquet_file"}
@@ -75,7 +75,9 @@ def export_drive(
     module = import_module(f"simconsole.recording.exports.{FORMATS[format_name]}")
     topics = None
     if of_topics:
-        signals = road_signals(world, session.mode.tick_hz)
+        traffic = session.environment.traffic
+        elsewhere = traffic is not None and traffic.sumo is not None
+        signals = (running_signals if elsewhere else road_signals)(world, session.mode.tick_hz)
         topics = DriveTopics(session, route_points(world), signals, shown_map(world), robot)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -59,7 +59,7 @@ class SceneWriter:
             follower=self._follower,
         )
         view.add(added)
-        if (lamps := self._lamps.until(int(ticks[-1]))) is not None:
+        if (lamps := self._lamps.until(int(ticks[-1]), road_users)) is not None:
             view.add_lamps(lamps)
         if road_users:
             view.add_road_users(road_user_shapes(road_users, job.tick_hz))

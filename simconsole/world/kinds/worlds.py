@@ -1,5 +1,6 @@
 """From a world's profile to the world, whatever its kind: the one place that knows them all."""
 
+from collections.abc import Callable
 from functools import lru_cache, partial
 
 from simconsole.profiles.files.world_files import read_map
@@ -11,7 +12,9 @@ from simconsole.world.drawing import draw
 from simconsole.world.earth import earth_of
 from simconsole.world.roads.road_map import RoadMap
 from simconsole.world.roads.road_world import road_world, roads_of
+from simconsole.world.roads.running import RunningNow
 from simconsole.world.rules.road_signals import RoadSignals
+from simconsole.world.rules.running_signals import RunningSignals
 from simconsole.world.world import ShownMap, World
 
 
@@ -55,6 +58,19 @@ def road_signals(profile: WorldProfile | None, tick_hz: int) -> RoadSignals | No
         return None
     roads = roads_of(open_world(profile))
     return None if roads is None else RoadSignals(roads.road_map, tick_hz)
+
+
+def running_signals(
+    profile: WorldProfile | None, tick_hz: int, newest: Callable[[], RunningNow] | None = None
+) -> RunningSignals | None:
+    """Return the traffic lights of a world that another simulator runs (`newest`, or as they are taken).
+
+    None where it has no road map. Raises as open_world.
+    """
+    if not isinstance(profile, RoadsProfile):
+        return None
+    roads = roads_of(open_world(profile))
+    return None if roads is None else RunningSignals(roads.road_map, tick_hz, newest)
 
 
 def shown_map(profile: WorldProfile | None) -> ShownMap:

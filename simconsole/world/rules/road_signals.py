@@ -2,12 +2,12 @@
 
 import math
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Final, NamedTuple
 
-from simconsole.values.signals import FAR
+from simconsole.values.signals import FAR, SignalState
 from simconsole.world.roads.road_map import Connection, RoadMap, active
-from simconsole.world.rules.timetable import Signals, durations_ticks, link_states, until_change
+from simconsole.world.rules.timetable import Signals, durations_ticks, greens, link_states, until_change
 
 IN_REACH_M: Final = 300.0
 """Radio and eyes reach no further."""
@@ -33,6 +33,10 @@ class SignalShown(NamedTuple):
     states: list[int]
     next_states: list[int]
     change_s: list[float]  # NEVER_S: it does not change
+    green_from_s: list[float]  # the next time of green, 0: it is green; NEVER_S: there is none
+    green_to_s: list[float]  # NEVER_S: it lasts, or nobody knows
+    later_green_from_s: list[float]  # the one after that, likewise
+    later_green_to_s: list[float]
 
 
 class _PhaseShown(NamedTuple):
@@ -41,6 +45,7 @@ class _PhaseShown(NamedTuple):
     states: list[int]
     next_states: list[int]
     later_ticks: list[float]  # after the phase's end, until a link changes; FAR: never
+    later_states: list[list[tuple[SignalState, float]]]  # of each link, what follows and for how long, in ticks
 
 
 class RoadSignals:
@@ -66,7 +71,22 @@ class RoadSignals:
         phase, left_ticks = self._signals.phase(number, tick)
         now, tick_hz = self._shown[number][phase], self._signals.tick_hz
         change_s = [NEVER_S if later >= FAR else (left_ticks + later) / tick_hz for later in now.later_ticks]
-        return SignalShown(self._signals.signals[number].id, now.states, now.next_states, change_s)
+        coming = [
+            greens(SignalState(state), float(left_ticks), later)
+            for state, later in zip(now.states, now.later_states, strict=True)
+        ]
+        times = green_times(coming, tick_hz)
+        return SignalShown(self._signals.signals[number].id, now.states, now.next_states, change_s, *times)
+
+
+def green_times(coming: Sequence[Sequence[tuple[float, float]]], tick_hz: int) -> tuple[list[float], ...]:
+    """Return the last fields of `SignalShown` for the times of green of each link in ticks, as `greens` has them."""
+
+    def told(number: int, place: int) -> list[float]:
+        ticks = [some[number][place] if number < len(some) else FAR for some in coming]
+        return [NEVER_S if one >= FAR else one / tick_hz for one in ticks]
+
+    return told(0, 0), told(0, 1), told(1, 0), told(1, 1)
 
 
 def _reaches(places: list[tuple[float, float]], x_m: float, y_m: float) -> bool:
@@ -83,6 +103,13 @@ def _phases(signals: Signals, number: int) -> list[_PhaseShown]:
             [int(states[phase]) for states in links],
             [int(one[phase][1]) for one in later],
             [one[phase][0] for one in later],
+            [
+                [
+                    (states[other % len(states)], float(durations[other % len(states)]))
+                    for other in range(phase + 1, phase + 1 + len(states))
+                ]
+                for states in links
+            ],
         )
         for phase in range(len(durations))
     ]

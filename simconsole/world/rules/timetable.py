@@ -129,6 +129,33 @@ def until_change(states: Sequence[SignalState], durations: Sequence[int]) -> lis
     return found
 
 
+GREEN: Final = (SignalState.PERMISSIVE_MOVEMENT_ALLOWED, SignalState.PROTECTED_MOVEMENT_ALLOWED)
+
+
+def greens(
+    now: SignalState, left_ticks: float, later: Sequence[tuple[SignalState, float]]
+) -> list[tuple[float, float]]:
+    """Return the next two times of green as (begin, end) in ticks from now; 0: it is green, FAR: nobody knows its end.
+
+    Args:
+        now: what is shown.
+        left_ticks: for how long; FAR: nobody knows.
+        later: what follows and for how long, in order, ending with what is shown now.
+    """
+    if left_ticks >= FAR or not later:
+        return [(0.0, FAR)] if now in GREEN else []
+    found: list[tuple[float, float]] = []
+    begin, at = (0.0 if now in GREEN else -1.0), left_ticks
+    for state, lasts_ticks in (*later, *later):
+        if state in GREEN and begin < 0.0:
+            begin = at
+        elif state not in GREEN and begin >= 0.0:
+            found.append((begin, at))
+            begin = -1.0
+        at += lasts_ticks
+    return found[:2] if found or begin != 0.0 else [(0.0, FAR)]
+
+
 @kernel
 def phase_now(timetable: Timetable, signal: float, tick: float) -> PhaseNow:
     """Return where the program of a signal is in a tick."""

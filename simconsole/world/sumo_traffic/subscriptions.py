@@ -7,7 +7,7 @@ import numpy as np
 
 from simconsole.values.signals import FAR
 from simconsole.world.roads.road_map import Array, Phase
-from simconsole.world.rules.running_signals import Running
+from simconsole.world.roads.running import Running
 from simconsole.world.sumo_traffic.places import Moved, middles_of
 from simconsole.world.traffic.road_users import CAPACITY, FIELDS, RoadUserKind
 
@@ -121,6 +121,10 @@ class SignalReader:
         """Return what they show after the last step; SUMO's clock stood at `start_s` at tick 0."""
         found: Found = self._sumo.trafficlight.getAllSubscriptionResults()
         return {name: self._running(name, found[name], start_s) for name in sorted(found)}
+
+    def forget(self) -> None:
+        """Tell every signal anew: ticks and SUMO's clock have moved apart."""
+        self._last.clear()
 
     def _running(self, name: str, now: Mapping[int, Any], start_s: float) -> Running:
         before = self._last.get(name)

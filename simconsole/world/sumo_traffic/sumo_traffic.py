@@ -71,6 +71,7 @@ class SumoTraffic:
         self._profile, self._around = profile.sumo, around
         self.period_s = 0.001 * profile.period_ms
         self.signals = RunningSignals(around.road_map, around.tick_hz)
+        self.road_map = around.road_map
         self.lost: str | None = None
         self.ego_error_m = 0.0
         self._numbers, self._users = Numbers(), NOBODY
@@ -100,6 +101,11 @@ class SumoTraffic:
                 self.lost = ascii(str(error) or type(error).__name__)[1:-1][:200]
                 self._users = NOBODY
         return self._users
+
+    def stand(self, periods: int) -> None:
+        """Let so many periods of the drive go by in which SUMO's time stands still."""
+        self._start_s -= periods * self.period_s
+        self._reader.forget()
 
     def push(self, number: float, change_mps: float) -> None:
         """Change the speed of road user `number`, who has collided and from now on only comes to rest."""

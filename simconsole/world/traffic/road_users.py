@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simconsole.world.roads.road_map import Array
+from simconsole.world.roads.running import NONE_RUNNING, RunningNow
 
 
 class RoadUserKind(IntEnum):
@@ -46,10 +47,11 @@ class Box(NamedTuple):
 
 
 class RoadUsersAt(NamedTuple):
-    """The road users after a tick: a table, float64 [users, FIELDS]."""
+    """The road users after a tick: a table, float64 [users, FIELDS]; and the signals that came with them."""
 
     tick: int
     users: Array
+    signals: RunningNow = NONE_RUNNING  # where another simulator runs them
 
 
 CAPACITY: Final = 256

@@ -1,5 +1,7 @@
 """What the autopilot knows of traffic lights."""
 
+import math
+
 from simconsole.bridge.messages import standard_registry
 from simconsole.drivers.autopilot.lights import SIGNALS, SIGNALS_TYPE, lights_of, signal_stops
 from simconsole.drivers.path_tracker.signal_stops import GAP_M, Light
@@ -20,6 +22,9 @@ def test_message_becomes_lights_by_name_and_link() -> None:
     message.signals = [registry.struct("simconsole_msgs/TrafficSignal")("a", [3, 6], [6, 7], [12.5, -1.0])]
     assert lights_of(message) == {("a", 0): Light(3, 6, 12.5, 7.5), ("a", 1): Light(6, 7, -1.0, 7.5)}
     assert SIGNALS == "/traffic_signals"
+    signal = registry.struct("simconsole_msgs/TrafficSignal")
+    message.signals = [signal("a", [3, 6], [6, 7], [12.5, -1.0], [12.5, 0.0], [20.0, -1.0], [40.0, -1.0], [50.0, -1.0])]
+    assert [one.greens_s for one in lights_of(message).values()] == [((12.5, 20.0), (40.0, 50.0)), ((0.0, math.inf),)]
 
 
 def test_worlds_without_lights_on_their_route_have_none() -> None:

@@ -13,6 +13,7 @@ from simconsole.hud.driver_view.views import Look
 from simconsole.hud.gl.renderer import Quality, Renderer
 from simconsole.world.drawing import Drawing
 from simconsole.world.drawing_layers import Light, LightProgram
+from simconsole.world.roads.running import Running
 from simconsole.world.traffic.road_users import RoadUser
 from tests.hud.gl.pictures import Pixels, context, pixels, target
 from tests.samples import Sample
@@ -229,6 +230,15 @@ def test_lamp_that_shines_is_seen_by_those_who_come(letter: str, channel: int, o
     colour = lit[changed].astype(int).mean(axis=0)
     assert all(colour[channel] > colour[other] + 60 for other in others)
     assert (unlit[changed].max(axis=1) < 120).mean() > 0.9
+
+
+def test_another_simulators_light_shines_as_it_says() -> None:
+    red, green = (LightProgram("one", 0, 0.0, (1.0,), letter) for letter in "rG")
+    shown = ShownVehicle(x_m=-500.0, tick_hz=100)
+    told = shown._replace(signals={"one": Running("G", (), 0, 0.0)})
+    assert np.array_equal(
+        drawn(world_parts_of_light(red), TOWARDS_LIGHT, told), drawn(world_parts_of_light(green), TOWARDS_LIGHT, shown)
+    )
 
 
 def world_parts_of_light(program: LightProgram | None) -> ViewScene:

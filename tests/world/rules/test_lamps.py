@@ -2,11 +2,12 @@
 
 import pytest
 
-from simconsole.values.signals import SignalState
+from simconsole.values.signals import FAR, SignalState
 from simconsole.world.drawing_layers import Light, LightProgram
 from simconsole.world.roads.lane_graph import LaneGraph
 from simconsole.world.roads.road_drawing import draw_roads
 from simconsole.world.roads.road_route import route_over
+from simconsole.world.roads.running import Running
 from simconsole.world.rules.lamps import AMBER, GREEN, RED, Lamps, Lit
 from simconsole.world.rules.road_signals import RoadSignals
 from tests.world.nets import CITY, generated_map
@@ -61,3 +62,11 @@ def test_light_of_no_program_shows_nothing_and_the_tick_rate_may_change() -> Non
     assert lamps.lit(0, HZ) == [Lit(1, RED)]
     assert lamps.lit(2 * HZ, HZ) == [Lit(1, GREEN)]
     assert lamps.lit(2 * HZ, 2 * HZ) == [Lit(1, RED)]
+
+
+def test_another_simulator_says_what_shines() -> None:
+    lamps = Lamps([light("r"), Light(0.0, 0.0, 0.0, LightProgram("two", 1, 0.0, (2.0,), "r"))])
+    now = {"one": Running("G", (), 0, FAR), "two": Running("ry", (), 0, FAR)}
+    assert lamps.lit(7, HZ, now) == [Lit(0, GREEN), Lit(1, AMBER)]
+    assert lamps.lit(7, HZ, {"two": Running("r", (), 0, FAR)}) == [], "of nobody it knows, and of no such link"
+    assert lamps.lit(7, HZ, {}) == [Lit(0, RED), Lit(1, RED)], "the programs of the map"

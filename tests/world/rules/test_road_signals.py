@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from simconsole.values.signals import SignalState
 from simconsole.world.rules.road_signals import IN_REACH_M, NEVER_S, RoadSignals
 from simconsole.world.rules.timetable import Signals
@@ -25,6 +27,22 @@ def test_what_is_told_is_what_each_link_shows() -> None:
                 assert never or shown.change_s[link] == own.change_s
                 changes += not never
     assert changes > 1000
+
+
+def test_times_of_green_are_those_of_the_program() -> None:
+    """Against what is shown, tick by tick."""
+    road_map = generated_map(*CITY)
+    told = RoadSignals(road_map, 10)
+    states = np.array([told.shown(0, tick).states for tick in range(4000)])
+    green = (states == SignalState.PERMISSIVE_MOVEMENT_ALLOWED) | (states == SignalState.PROTECTED_MOVEMENT_ALLOWED)
+    assert len(set(green.mean(axis=0))) > 1
+    for tick in range(0, 1500, 7):
+        shown = told.shown(0, tick)
+        for link in range(states.shape[1]):
+            changes = np.flatnonzero(np.diff(green[tick:, link].astype(int))) + 1
+            ends = [0, *changes] if green[tick, link] else list(changes)
+            times = (shown.green_from_s, shown.green_to_s, shown.later_green_from_s, shown.later_green_to_s)
+            assert [round(10.0 * one[link]) for one in times] == ends[:4]
 
 
 def test_only_those_within_reach_are_told() -> None:
