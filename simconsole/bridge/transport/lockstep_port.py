@@ -1,6 +1,7 @@
-"""A further platform of a session on the rosbridge server of the first one, in lockstep."""
+"""One of several platforms on the rosbridge server that they share in lockstep."""
 
 from collections.abc import Callable
+from typing import Self
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.console.surroundings import Surroundings
@@ -17,10 +18,19 @@ class LockstepPort:
         console: the platform's topics and its slot.
     """
 
-    def __init__(
-        self, bridge: LockstepBridge, profile: BridgeProfile, odometry_hz: float, around: Surroundings
-    ) -> None:
-        """Add the platform's topics to the server.
+    def __init__(self, bridge: LockstepBridge, console: ConsoleBridge) -> None:
+        """Take the server and what is on it of the platform."""
+        self._bridge = bridge
+        self.console = console
+
+    @classmethod
+    def of_first(cls, bridge: LockstepBridge) -> Self:
+        """Return the port of the platform whose server it is."""
+        return cls(bridge, bridge.console)
+
+    @classmethod
+    def beside(cls, bridge: LockstepBridge, profile: BridgeProfile, odometry_hz: float, around: Surroundings) -> Self:
+        """Add the topics of a further platform to the server and return its port.
 
         Args:
             bridge: the server.
@@ -31,8 +41,7 @@ class LockstepPort:
         Raises:
             ProfileError: as `ConsoleBridge`.
         """
-        self._bridge = bridge
-        self.console = ConsoleBridge(in_lockstep(profile, odometry_hz), around=around, beside=bridge.console)
+        return cls(bridge, ConsoleBridge(in_lockstep(profile, odometry_hz), around=around, beside=bridge.console))
 
     def exchange(self, snapshot: Snapshot, timeout_s: float, stop: Callable[[], bool]) -> bool:
         """Publish, then wait for the command that answers this very snapshot, as `LockstepBridge.exchange`."""
