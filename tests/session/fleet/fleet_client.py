@@ -18,6 +18,7 @@ class FleetClient:
     def __init__(self, url: str, speeds: Sequence[tuple[float, float]], names: Sequence[str] = NAMES) -> None:
         self.heard: Counter[str] = Counter()
         self.last: dict[str, Any] = {}
+        self.scans: list[Any] = []  # of the first robot
         self.frames: set[str] = set()
         self._url, self._names = url, names
         self._speeds = dict(zip(names, speeds, strict=True))
@@ -31,6 +32,7 @@ class FleetClient:
             for name in self._names:
                 client.advertise(f"/{name}/cmd_vel", "geometry_msgs/Twist")
                 client.advertise(f"/{name}/console/request", "std_msgs/String")
+                client.subscribe(f"/{name}/console/mode", "std_msgs/String")
                 client.subscribe(f"/{name}/scan", "sensor_msgs/LaserScan", queue_length=5)
                 client.subscribe(f"/{name}/odom", "nav_msgs/Odometry", queue_length=5)
             client.connect(PATIENCE_S)
@@ -48,9 +50,11 @@ class FleetClient:
         if topic in ("/tf", "/tf_static"):
             self.frames.update(one.child_frame_id for one in message.transforms)
         name = topic.split("/")[1]
+        if topic == f"/{self._names[0]}/scan":
+            self.scans.append(message)
         if not topic.endswith("/odom"):
             return
-        if self.heard[topic] <= 5:
+        if self.heard[topic] % 10 == 0 and self.last[f"/{name}/console/mode"].data != "AUTONOMOUS":
             client.publish(f"/{name}/console/request", {"data": "autonomous"})
         speed, turn = self._speeds[name]
         linear, angular = {"x": speed, "y": 0.0, "z": 0.0}, {"x": 0.0, "y": 0.0, "z": turn}

@@ -69,7 +69,7 @@ def test_each_follows_its_own_commander(driven: Driven) -> None:
         assert table.column("command.target_speed_mps")[-1] == pytest.approx(speed)
         assert table.column("command.target_yaw_rate_radps")[-1] == pytest.approx(turn)
         assert (table.column("ros.refused") == 0.0).all()
-        assert table.column("ros.sequence")[-1] == 1 + SECONDS * 50 - 1
+        assert table.column("ros.sequence")[-1] == SECONDS * 50 - 1, "one for each odometry but the last"
     assert np.ptp(driven.tables[2].column("vehicle.x_m")) < 1e-9, "it turns in place"
 
 
@@ -85,16 +85,21 @@ def test_one_drives_into_another_and_stays_in_front_of_it(driven: Driven) -> Non
 
 def test_what_each_is_told_of_the_others_is_where_they_were(driven: Driven) -> None:
     told, other = driven.tables[1], driven.tables[0]
-    body = -0.032 if "others.x_0_m" not in told.columns else told.column("others.x_0_m")[800] - other.column("vehicle.x_m")[799]
-    assert abs(body) < 0.05
+    ahead_m = told.column("others.x_0_m")[800] - other.column("vehicle.x_m")[799]
+    assert ahead_m == pytest.approx(-0.032, abs=0.002), "the middle of the body, as the second robot was told it"
     assert told.column("others.radius_0_m")[100] == pytest.approx(RADIUS_M, abs=0.01)
     # Of the end of the control period before, and the same throughout a period.
     assert (told.column("others.x_0_m")[800:804] == told.column("others.x_0_m")[800]).all()
 
 
 def test_lidars_see_the_other_robots(driven: Driven) -> None:
-    ranges = np.array(driven.client.last["/tb3_0/scan"].ranges)
-    assert 0.0 < ranges[0] < 0.35, "straight ahead stands the second robot"
+    scan = driven.client.scans[2]  # of 0.4 to 0.6 s; its first ray goes straight ahead
+    x = driven.tables[0].column("vehicle.x_m")[round(0.4 * 200) - 1]
+    away_m = 1.4 - 0.032 - RADIUS_M - (x - 0.032)
+    assert scan.ranges[0] == pytest.approx(away_m, abs=0.05), "ahead stands the second robot"
+    assert scan.ranges[180] < 1.0, "and behind is the wall"
+    alone = driven.client.scans[2].ranges[15]
+    assert alone > away_m + 1.0, "beside it there is nobody"
 
 
 def test_topics_and_frames_are_in_each_robots_namespace(driven: Driven) -> None:
