@@ -91,10 +91,10 @@ def drive(
     Raises:
         SimConsoleError: a device, port or file cannot be opened; what was opened before is closed again.
     """
-    if resolved.session.platforms:
+    if resolved.session.scenario.platforms:
         from simconsole.session.fleet.fleet_drive import drive_fleet
 
-        return drive_fleet(resolved, folder, given, show)
+        return drive_fleet(resolved, folder, given, show, on_bridge=on_bridge)
     sweep()
     check_session(resolved.session, has_controller=own.controller is not None)
     check_world(resolved)

@@ -42,7 +42,7 @@ def resolve(session: SessionProfile, cockpit: str | None = None, language: str |
         ProfileError: one of them is missing or wrong; names its file, key, value and range.
     """
     world = None if session.environment.world is None else load_world(session.environment.world)
-    named = [platform.vehicle or session.scenario.vehicle for platform in session.platforms]
+    named = [platform.vehicle or session.scenario.vehicle for platform in session.scenario.platforms]
     return ResolvedSession(
         session=session if world is None else _started(session, world),
         cockpit=load("devices", cockpit or session.devices.cockpit, CockpitProfile),
@@ -239,9 +239,9 @@ def _profiles_beside(session: SessionProfile, path: Path) -> SessionProfile:
         else msgspec.structs.replace(
             platform, vehicle=str(_beside(path, "platforms.vehicle", platform.vehicle, platform.vehicle))
         )
-        for platform in session.platforms
+        for platform in session.scenario.platforms
     )
-    return msgspec.structs.replace(session, platforms=platforms)
+    return msgspec.structs.replace(session, scenario=msgspec.structs.replace(session.scenario, platforms=platforms))
 
 
 def _beside(path: Path, key: str, value: str, name: str) -> Path:

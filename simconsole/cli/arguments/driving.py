@@ -12,7 +12,7 @@ _MAX_DELAY_MS: Final = 6000.0
 
 
 def driving(commands: Any) -> None:
-    """Add demo, drive, check and sweep."""
+    """Add demo, drive, check, turtlebot and sweep."""
     demo = command(commands, "demo", "demo:demo", "the whole way once, with no hardware: person, autopilot, report")
     demo.add_argument("--perfect", action="store_true", help="exact odometry and no delay on the autopilot's link")
     demo.add_argument("--realtime", action="store_true", help="pace it, with every worker in its own process")
@@ -44,6 +44,15 @@ def driving(commands: Any) -> None:
     check.add_argument("--junit", metavar="FILE", help="write a JUnit report")
     check.add_argument("--review", metavar="FILE", help="write accepted and driven over each other, where they differ")
     check.add_argument("--update-golden", action="store_true", help="accept what was driven as the new golden")
+
+    robots = command(commands, "turtlebot", "turtlebot.command:turtlebot", "three robots: map, share tasks out, drive")
+    robots.add_argument("--session", default="turtlebot3_team", metavar="SESSION", help="with platforms, in an arena")
+    robots.add_argument("--seed", type=int, default=0, metavar="N", help="of the errors of lidar and odometry")
+    robots.add_argument(
+        "--objective", choices=("sum", "makespan"), default="sum", help="what the allocation makes least (default: sum)"
+    )
+    robots.add_argument("--out", metavar="DIR", help="where all goes (default: out/turtlebot-TIME)")
+    robots.add_argument("--no-pack", action="store_true", help="leave the logs as they were written")
 
     sweep = command(commands, "sweep", "sweep.command:sweep", "many drives of one plan into one table")
     sweep.add_argument("plan", metavar="PLAN", help="a .yaml file: sessions or scenarios, values, seeds")

@@ -1,7 +1,7 @@
 """The one rosbridge server of several platforms in lockstep: each has its topics, its commander and its link."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -24,6 +24,7 @@ def links(
     folder: Path,
     interrupt: Interrupt,
     stack: ExitStack,
+    on_bridge: Callable[[str], None],
 ) -> list[LockstepLink]:
     """Open the server, wait until somebody hears each platform's odometry, and return the platforms' links.
 
@@ -33,6 +34,7 @@ def links(
         folder: where topics are recorded if the session says so.
         interrupt: ends the waiting.
         stack: closes the server.
+        on_bridge: told where it listens.
 
     Raises:
         BridgeError: it cannot listen, or a platform's controller does not come in time.
@@ -60,6 +62,7 @@ def links(
     for bridge, around in others:
         assert bridge is not None
         ports.append(LockstepPort.beside(server, bridge, mode.control_hz, around))
+    on_bridge(server.url)
     consoles_there = [port.console for port in ports]
     deadline_s = time.monotonic() + mode.wait_for_controller_s
     while (left_s := deadline_s - time.monotonic()) > 0.0:

@@ -16,6 +16,7 @@ from simconsole.recording.bundles.provenance import Given
 from simconsole.session.fleet.fleet_bridge import links
 from simconsole.session.fleet.members import members
 from simconsole.session.lifecycle import ENDLESS_TICKS, DriveResult, bundle_of, warm_up
+from simconsole.session.lockstep import LockstepLink
 from simconsole.session.opening import Opened, open_headless
 from simconsole.session.preconditions import check_session, check_world
 from simconsole.tick.advance import Console, ConsoleState
@@ -34,14 +35,22 @@ class _Member(NamedTuple):
     initial: ConsoleState
     bundle: BundleWriter
     opened: Opened
+    link: LockstepLink
 
 
 def drive_fleet(
-    resolved: ResolvedSession, folder: Path, given: Given, show: Callable[[Snapshot], None] = lambda snapshot: None
+    resolved: ResolvedSession,
+    folder: Path,
+    given: Given,
+    show: Callable[[Snapshot], None] = lambda snapshot: None,
+    until_left: bool = False,
+    on_bridge: Callable[[str], None] = lambda url: None,
 ) -> DriveResult:
     """Drive all platforms of a session into one new bundle: that of the first in `folder`, the others' below it.
 
-    `show` sees the first platform again and again. Signals end all as `lifecycle.drive` tells.
+    `show` sees the first platform again and again. With `until_left` the drive ends when no controller is left, too.
+    `on_bridge` is told where the server listens, before anybody is waited for. Signals end all as `lifecycle.drive`
+    tells.
 
     Raises:
         SimConsoleError: the session cannot be driven so, or a port or file cannot be opened.
@@ -57,13 +66,13 @@ def drive_fleet(
     with ExitStack() as stack:
         interrupt = stack.enter_context(Interrupt())
         bundles = _bundles(parts, [console for console, _ in assembled], folder, given, stack)
-        opened = _open(parts, [console for console, _ in assembled], bundles, interrupt, stack)
+        opened = _open(parts, [console for console, _ in assembled], bundles, interrupt, stack, on_bridge)
         fleet = [
-            _Member(part, *built, bundle, each)
+            _Member(part, *built, bundle, *each)
             for part, built, bundle, each in zip(parts, assembled, bundles, opened, strict=True)
         ]
         began_s = time.monotonic()
-        states = _run(fleet, interrupt, show)
+        states = _run(fleet, interrupt, show, until_left)
         if interrupt.raised:
             states = [
                 come_to_rest(member.console, state, member.opened.components.recorder)
@@ -86,7 +95,7 @@ def drive_fleet(
 def _bundles(
     parts: Sequence[ResolvedSession], consoles: Sequence[Console], folder: Path, given: Given, stack: ExitStack
 ) -> list[BundleWriter]:
-    names = [platform.name for platform in parts[0].session.platforms]
+    names = [platform.name for platform in parts[0].session.scenario.platforms]
     bundles: list[BundleWriter] = []
     for part, console, name in zip(parts, consoles, names, strict=True):
         own = folder / name if bundles else folder
@@ -103,15 +112,18 @@ def _open(
     bundles: Sequence[BundleWriter],
     interrupt: Interrupt,
     stack: ExitStack,
-) -> list[Opened]:
-    ports = links(parts, consoles, bundles[0].folder, interrupt, stack)
+    on_bridge: Callable[[str], None],
+) -> list[tuple[Opened, LockstepLink]]:
+    ports = links(parts, consoles, bundles[0].folder, interrupt, stack, on_bridge)
     return [
-        open_headless(part, console, bundle.log, bundle.folder, interrupt, stack, link=port)
+        (open_headless(part, console, bundle.log, bundle.folder, interrupt, stack, link=port), port)
         for part, console, bundle, port in zip(parts, consoles, bundles, ports, strict=True)
     ]
 
 
-def _run(fleet: Sequence[_Member], interrupt: Interrupt, show: Callable[[Snapshot], None]) -> list[ConsoleState]:
+def _run(
+    fleet: Sequence[_Member], interrupt: Interrupt, show: Callable[[Snapshot], None], until_left: bool
+) -> list[ConsoleState]:
     session, tick_hz = fleet[0].resolved.session, fleet[0].console.tick_hz
     duration_s = session.scenario.duration_s
     ticks = ENDLESS_TICKS if duration_s is None else round(duration_s * tick_hz)
@@ -131,7 +143,7 @@ def _run(fleet: Sequence[_Member], interrupt: Interrupt, show: Callable[[Snapsho
     def finished(states: Sequence[ConsoleState]) -> bool:
         """Show the first platform as far as it is; return whether somebody ends the drive."""
         show(Snapshot(states[0].tick, tick_hz, states[0].vector))
-        return interrupt.raised
+        return interrupt.raised or (until_left and not any(member.link.clients for member in fleet))
 
     return run_together(drives, initial, whereabouts, session.mode.control_period_ticks, finished)
 

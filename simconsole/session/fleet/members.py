@@ -23,7 +23,7 @@ def members(resolved: ResolvedSession) -> tuple[ResolvedSession, ...]:
     session = resolved.session
     bridge, arena = _checked(session, resolved)
     taken = []
-    for number, (platform, vehicle) in enumerate(zip(session.platforms, resolved.fleet, strict=True)):
+    for number, (platform, vehicle) in enumerate(zip(session.scenario.platforms, resolved.fleet, strict=True)):
         link = msgspec.structs.replace(bridge.link, seed=bridge.link.seed + number)
         own_bridge = msgspec.structs.replace(bridge, namespace=f"{bridge.namespace}/{platform.name}", link=link)
         outputs = msgspec.structs.replace(session.outputs, bridge=own_bridge)
@@ -36,7 +36,7 @@ def members(resolved: ResolvedSession) -> tuple[ResolvedSession, ...]:
 def _own(vehicle: VehicleProfile, number: int) -> TurtlebotProfile:
     """Return the robot with errors of its own."""
     if not isinstance(vehicle, TurtlebotProfile):
-        raise ProfileError(f"platforms: value {number}: robots only drive together, and its vehicle is none")
+        raise ProfileError(f"scenario.platforms: value {number}: robots only drive together, and its vehicle is none")
     errors = msgspec.structs.replace(vehicle.odometry, seed=vehicle.odometry.seed + number)
     robot: TurtlebotProfile = msgspec.structs.replace(vehicle, odometry=errors)
     return robot
@@ -47,7 +47,9 @@ def _start(platform: PlatformSection, number: int, arena: ArenaProfile) -> Start
         return platform.start
     named = {spot.name: spot for spot in arena.starts}
     if platform.name not in named and number >= len(arena.starts):
-        raise ProfileError(f"platforms: {platform.name}: start: value missing: the arena has {len(named)} starts")
+        raise ProfileError(
+            f"scenario.platforms: {platform.name}: start: value missing: the arena has {len(named)} starts"
+        )
     spot = named.get(platform.name) or arena.starts[number]
     return Start(x_m=spot.x_m, y_m=spot.y_m, yaw_deg=spot.yaw_deg)
 
@@ -70,9 +72,11 @@ def _checked(session: SessionProfile, resolved: ResolvedSession) -> tuple[Bridge
     }
     wrong = [wanted for wanted, is_so in alone.items() if not is_so]
     if wrong:
-        raise ProfileError(f"platforms: several platforms need {', '.join(wrong)}")
+        raise ProfileError(f"scenario.platforms: several platforms need {', '.join(wrong)}")
     if bridge is None or bridge.upstream is not None or bridge.ros2 is not None or bridge.external_view:
-        raise ProfileError("platforms: several platforms need outputs.bridge, without upstream, ros2 and external_view")
+        raise ProfileError(
+            "scenario.platforms: several platforms need outputs.bridge, without upstream, ros2 and external_view"
+        )
     if not isinstance(arena, ArenaProfile):
         raise ProfileError(f"environment.world: value {session.environment.world}: an arena, for several platforms")
     return bridge, arena

@@ -29,12 +29,15 @@ def session_of(port: int, seconds: float = SECONDS, **changes: Any) -> SessionPr
     plain: dict[str, Any] = {
         "schema": 1,
         "environment": {"world": "arena"},
-        "scenario": {"vehicle": "turtlebot3_burger", "duration_s": seconds},
+        "scenario": {
+            "vehicle": "turtlebot3_burger",
+            "duration_s": seconds,
+            "platforms": [{"name": name, "start": start} for name, start in zip(NAMES, starts, strict=True)],
+        },
         "features": {"control": {"person_required": False, "standstill_speed_mps": 0.01}},
         "outputs": {"bridge": {"port": port}, "hud": None},
         "devices": {"driver": "none"},
         "mode": {"tick_hz": 200, "pacing": "lockstep", "control_period_ms": 20, "answer_timeout_s": 60.0},
-        "platforms": [{"name": name, "start": start} for name, start in zip(NAMES, starts, strict=True)],
     }
     return convert(plain | changes, SessionProfile, "test")
 
