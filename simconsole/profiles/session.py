@@ -51,6 +51,17 @@ class Environment(Section, frozen=True, kw_only=True):
     """Other vehicles, where the world is a road map."""
 
 
+class PlatformSection(Section, frozen=True, kw_only=True):
+    """One of several platforms of a session."""
+
+    name: Annotated[str, Meta(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,31}$")]
+    """Its namespace: topics are /NAME/..., frames NAME/...; and its folder in the bundle."""
+    vehicle: ProfileName | None = None
+    """Without it that of the scenario."""
+    start: Start | None = None
+    """Without it the arena's start of its name, or of its number."""
+
+
 class Scenario(Section, frozen=True, kw_only=True):
     """What is driven: the vehicle, from where, how long, and what goes wrong on the way."""
 
@@ -59,6 +70,19 @@ class Scenario(Section, frozen=True, kw_only=True):
     """Where the world's route begins, unless it says otherwise; without a world at the origin of `map`."""
     duration_s: Annotated[float, Meta(gt=0.0, le=86_400.0)] | None = None
     faults: Faults = ()
+    platforms: Annotated[tuple[PlatformSection, ...], Meta(max_length=16)] = ()
+    """Robots that drive together, where the world is an arena and `mode.pacing` lockstep; none: one, the scenario's.
+    Reports and views show the first one."""
+
+    def __post_init__(self) -> None:
+        """Refuse platforms of one name.
+
+        Raises:
+            ValueError: names key and value.
+        """
+        names = [platform.name for platform in self.platforms]
+        if len(set(names)) < len(names):
+            raise ValueError(f"platforms: name: a name twice in {', '.join(names)}: each one once")
 
 
 class Aids(Section, frozen=True, kw_only=True):

@@ -19,9 +19,10 @@ class Remade(NamedTuple):
     """What a replay makes its ticks with."""
 
     columns: tuple[str, ...]  # of the state vectors that `advance` makes
-    no_inputs: Row  # the leading columns, inputs from outside, where nothing comes: for those that were not recorded
+    no_inputs: Row  # the inputs from outside, where nothing comes: for those that were not recorded
     initial: Row  # the state vector before the first recorded tick
     advance: AdvanceVector
+    others: int = 0  # of the inputs the last columns, which tell of other platforms; the rest are the leading ones
 
 
 class ReplayResult(NamedTuple):
@@ -107,12 +108,13 @@ class _InputMap:
 
     def __init__(self, recorded: tuple[str, ...], remade: Remade) -> None:
         places = {column: at for at, column in enumerate(recorded)}
-        wanted = remade.columns[: len(remade.no_inputs)]
+        leading, end = len(remade.no_inputs) - remade.others, len(remade.columns)
+        wanted = remade.columns[:leading] + remade.columns[end - remade.others :]
         known = [(at, places[column]) for at, column in enumerate(wanted) if column in places]
         self._to = [at for at, _ in known]
         self._from = [at for _, at in known]
         self._no_inputs = remade.no_inputs
-        self._same = self._to == self._from == list(range(len(wanted)))
+        self._same = not remade.others and self._to == self._from == list(range(len(wanted)))
 
     def __call__(self, vector: Row) -> Row:
         if self._same:

@@ -10,7 +10,7 @@ from simconsole.scene.entities import Array, Colour
 from simconsole.values.layout import read
 from simconsole.values.trigonometry import wrap_angle
 from simconsole.values.units import NS_PER_S
-from simconsole.vehicle.turtlebot.robot_state import ROBOT, RobotState
+from simconsole.vehicle.turtlebot.robot_state import ROBOT, RobotState, others_of
 from simconsole.world.arena.laser_scan import LaserScanner
 from simconsole.world.arena.lidar import TWO_PI
 
@@ -41,7 +41,10 @@ class LidarPoints:
         numbers = vectors[:, self._scans]
         ended = np.flatnonzero(np.diff(numbers, prepend=self._seen) != 0.0)
         self._seen = float(numbers[-1])
-        found = [(int(ticks[row]), self._echoes(read(vectors[row], ROBOT))) for row in ended.tolist()]
+        found = [
+            (int(ticks[row]), self._echoes(read(vectors[row], ROBOT), others_of(vectors[row])))
+            for row in ended.tolist()
+        ]
         if not found:
             return None
         return LidarShapes(
@@ -50,8 +53,8 @@ class LidarPoints:
             points=np.concatenate([points for _, points in found]),
         )
 
-    def _echoes(self, state: RobotState) -> Array:
-        scan, lidar = self._scanner.scan(state), self._scanner.profile
+    def _echoes(self, state: RobotState, others: Array) -> Array:
+        scan, lidar = self._scanner.scan(state, others), self._scanner.profile
         if scan is None:
             return np.zeros((0, 3))
         begin, end = state.scan_from, state.scan_to

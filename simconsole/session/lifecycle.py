@@ -85,9 +85,16 @@ def drive(
     torque goes off, the bundle is finished, then everything is closed. A second signal ends the process at once; before
     the first tick nothing is left.
 
+    Several platforms, where the session names them, are driven by `drive_fleet`; nobody watches these, and they have
+    no code of a lab's own.
+
     Raises:
         SimConsoleError: a device, port or file cannot be opened; what was opened before is closed again.
     """
+    if resolved.session.scenario.platforms:
+        from simconsole.session.fleet.fleet_drive import drive_fleet
+
+        return drive_fleet(resolved, folder, given, show, on_bridge=on_bridge)
     sweep()
     check_session(resolved.session, has_controller=own.controller is not None)
     check_world(resolved)
@@ -98,7 +105,7 @@ def drive(
     ticks = ENDLESS_TICKS if duration_s is None else round(duration_s * console.tick_hz)
     with ExitStack() as stack:
         interrupt = stack.enter_context(Interrupt())
-        bundle = stack.enter_context(_bundle(resolved, console, folder, given, own.signals))
+        bundle = stack.enter_context(bundle_of(resolved, console, folder, given, own.signals))
         stack.enter_context(undone(lambda: remove_half_made(folder)))
         opened = _open(resolved, console, bundle, interrupt, stack, own)
         if opened.bridge_url is not None:
@@ -173,9 +180,10 @@ def _list_what_workers_wrote(folder: Path, manifest: Manifest) -> None:
         add_export(folder, *unlisted(folder, manifest))
 
 
-def _bundle(
-    resolved: ResolvedSession, console: Console, folder: Path, given: Given, signals: OwnSignals | None
+def bundle_of(
+    resolved: ResolvedSession, console: Console, folder: Path, given: Given, signals: OwnSignals | None = None
 ) -> BundleWriter:
+    """Begin the bundle of a drive, as `new_bundle`, with the streams that its session has."""
     traffic = resolved.session.environment.traffic
     road_users = () if traffic is None else (message_stream(ROAD_USERS, ROAD_USERS_ENCODING),)
     if traffic is not None and traffic.sumo is not None:

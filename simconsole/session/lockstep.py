@@ -86,6 +86,11 @@ class LockstepLink:
         """Return how many ticks, from `tick` on, do not end a control period."""
         return -tick % self._period_ticks
 
+    @property
+    def clients(self) -> int:
+        """Connected clients."""
+        return self._bridge.clients
+
     def stand(self, snapshot: Snapshot) -> None:
         """Serve the clients while simulated time stands."""
         self._bridge.stand(STAND_S)

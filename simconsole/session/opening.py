@@ -88,11 +88,13 @@ def open_headless(
     stack: ExitStack,
     own: OwnCode = NO_OWN_CODE,
     scripted: Callable[[Components], Components] = lambda components: components,
+    link: LockstepLink | None = None,
 ) -> Opened:
     """Open a drive that runs as fast as it can, all of it in this process. A raised `interrupt` ends all waiting.
 
     A controller of `own` drives in the place of whoever the session names, as in lockstep. `scripted` puts what a
-    scenario holds into the parts, before faults act on them.
+    scenario holds into the parts, before faults act on them. A platform of several brings its `link` to the server
+    that they share.
 
     Raises:
         ProfileError: lockstep without a bridge.
@@ -111,10 +113,10 @@ def open_headless(
     traffic, unpushable = _open_traffic(resolved, console, stack), CollisionEnd(console.platform)
     parts = OwnParts(own, resolved.session.mode.control_period_ticks)
     if parts.controller is not None:
-        link = _lockstep_link(parts.controller, resolved.session, interrupt)
+        link = lockstep_link(parts.controller, resolved.session, interrupt)
         commands, outputs, counters = _over_link(link, resolved, console), (link,), link.counters
     elif resolved.session.mode.pacing == "lockstep":
-        link = _open_lockstep(resolved, console, bundle, interrupt, stack, traffic)
+        link = link or _open_lockstep(resolved, console, bundle, interrupt, stack, traffic)
         commands, outputs, standby = _over_link(link, resolved, console), (link,), (link.stand,)
         counters, take_acts = link.counters, link.take_acts
     elif resolved.session.features.commands is not None:
@@ -355,10 +357,11 @@ def _open_lockstep(
     if program is not None:
         stack.callback(tell_to_end, [program])
     _wait_for_controller(bridge, program, session.mode.wait_for_controller_s, interrupt.check)
-    return _lockstep_link(bridge, session, interrupt)
+    return lockstep_link(bridge, session, interrupt)
 
 
-def _lockstep_link(server: LockstepServer, session: SessionProfile, interrupt: Interrupt) -> LockstepLink:
+def lockstep_link(server: LockstepServer, session: SessionProfile, interrupt: Interrupt) -> LockstepLink:
+    """Return what the drive loop sees of a bridge in lockstep."""
     mode = session.mode
     return LockstepLink(server, mode.control_period_ticks, mode.answer_timeout_s, lambda: interrupt.raised)
 

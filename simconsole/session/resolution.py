@@ -16,7 +16,7 @@ from simconsole.profiles.scenario import ScenarioProfile
 from simconsole.profiles.session import SessionProfile, Start
 from simconsole.profiles.validation import PROFILE_FILES, convert
 from simconsole.profiles.view import HudProfile, LanguageProfile
-from simconsole.profiles.world import WorldProfile
+from simconsole.profiles.world import ArenaProfile, WorldProfile
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import ProfileError
 from simconsole.values.units import DEG_PER_RAD
@@ -42,12 +42,14 @@ def resolve(session: SessionProfile, cockpit: str | None = None, language: str |
         ProfileError: one of them is missing or wrong; names its file, key, value and range.
     """
     world = None if session.environment.world is None else load_world(session.environment.world)
+    named = [platform.vehicle or session.scenario.vehicle for platform in session.scenario.platforms]
     return ResolvedSession(
         session=session if world is None else _started(session, world),
         cockpit=load("devices", cockpit or session.devices.cockpit, CockpitProfile),
         vehicle=load_vehicle(session.scenario.vehicle),
         world=world,
         language=language_of(language or (session.outputs.hud or HudProfile()).language),
+        fleet=tuple(load_vehicle(name) for name in named),
     )
 
 
@@ -63,12 +65,23 @@ def language_of(name_or_path: str) -> LanguageProfile:
 
 
 def _started(session: SessionProfile, world: WorldProfile) -> SessionProfile:
-    """Return `session` with where it starts: at the beginning of the route, unless it says otherwise."""
+    """Return `session` with where it starts: the arena's first start, or the beginning of the route.
+
+    One that says where it starts is returned as it is.
+    """
     if session.scenario.start is not None:
         return session
+    if isinstance(world, ArenaProfile):
+        spot = world.starts[0]
+        return with_start(session, Start(x_m=spot.x_m, y_m=spot.y_m, yaw_deg=spot.yaw_deg))
     first = open_world(world).route.at(0.0)
     yaw_deg = math.remainder(first.yaw_rad, math.tau) * DEG_PER_RAD
     start = Start(x_m=first.x_m, y_m=first.y_m, yaw_deg=min(max(yaw_deg, -180.0), 180.0))
+    return with_start(session, start)
+
+
+def with_start(session: SessionProfile, start: Start) -> SessionProfile:
+    """Return `session` with another start."""
     return msgspec.structs.replace(session, scenario=msgspec.structs.replace(session.scenario, start=start))
 
 
@@ -220,7 +233,15 @@ def _profiles_beside(session: SessionProfile, path: Path) -> SessionProfile:
         if name is not None and name.endswith(PROFILE_FILES):
             changed: dict[str, object] = {key: str(_beside(path, f"{section}.{key}", name, name))}
             session = override(session, **{section: changed})
-    return session
+    platforms = tuple(
+        platform
+        if platform.vehicle is None or not platform.vehicle.endswith(PROFILE_FILES)
+        else msgspec.structs.replace(
+            platform, vehicle=str(_beside(path, "platforms.vehicle", platform.vehicle, platform.vehicle))
+        )
+        for platform in session.scenario.platforms
+    )
+    return msgspec.structs.replace(session, scenario=msgspec.structs.replace(session.scenario, platforms=platforms))
 
 
 def _beside(path: Path, key: str, value: str, name: str) -> Path:

@@ -30,7 +30,7 @@ from simconsole.values.signals import (
     NO_SITUATION,
     Commander,
 )
-from simconsole.values.state_vector import INPUT_WIDTH, LAYOUT, PLATFORM_AT, Snapshot, TickInputs, columns
+from simconsole.values.state_vector import INPUT_WIDTH, LAYOUT, OTHER, PLATFORM_AT, Snapshot, TickInputs, columns
 from simconsole.world.obstacles.sides import FixedThings
 from simconsole.world.obstacles.striking import strike
 from simconsole.world.rules.road_rules import RoadRules
@@ -68,6 +68,7 @@ class Console(NamedTuple):
     tick_s: float
     substeps: int
     width: int
+    others: int  # columns at the end that are inputs, too
     settings: Row  # CockpitSettings, ControlSettings, ForceSettings
     platform: Platform
     initial: Row  # the state vector before the first tick
@@ -83,7 +84,7 @@ class Console(NamedTuple):
     @property
     def columns(self) -> tuple[str, ...]:
         """Name of every column of a state vector of this drive."""
-        return columns(self.platform.state)
+        return columns(self.platform.state, self.platform.others)
 
 
 class ConsoleState(NamedTuple):
@@ -117,7 +118,8 @@ def build_console(
         tick_hz=tick_hz,
         tick_s=1.0 / tick_hz,
         substeps=PHYSICS_HZ // tick_hz,
-        width=PLATFORM_AT + len(platform.initial_state),
+        width=len(_initial(platform)),
+        others=len(OTHER) * platform.others,
         settings=np.array((*cockpit, *control, *force), dtype=np.float64),
         platform=platform,
         initial=_initial(platform),
@@ -133,7 +135,7 @@ def build_console(
 
 
 def _initial(platform: Platform) -> Row:
-    row = np.zeros(PLATFORM_AT + len(platform.initial_state), dtype=np.float64)
+    row = np.zeros(PLATFORM_AT + len(platform.initial_state) + len(OTHER) * platform.others, dtype=np.float64)
     write(row, LAYOUT.sample, NO_SAMPLE)
     write(row, LAYOUT.ros, NO_COMMAND)
     write(row, LAYOUT.ecu, NO_COMMAND)
@@ -153,15 +155,22 @@ def advance(
     state: ConsoleState, inputs: TickInputs, console: Console, mark: Mark = unheard
 ) -> tuple[ConsoleState, Snapshot]:
     """Advance the console by one tick. `state` is not changed; `mark` is called at the end of each stage."""
-    values = (*inputs.sample, *inputs.ros, *inputs.events, *inputs.ecu, *inputs.ahead, *inputs.impact)
+    values = (*inputs.sample, *inputs.ros, *inputs.events, *inputs.ecu, *inputs.ahead, *inputs.impact, *inputs.others)
     row = advance_vector(state.vector, values, console, mark)
     tick = state.tick + 1
     return ConsoleState(tick, row), Snapshot(tick, console.tick_hz, row)
 
 
 def advance_vector(previous: Row, inputs: Row | tuple[float, ...], console: Console, mark: Mark = unheard) -> Row:
-    """Return the state vector after `previous` for the INPUT_WIDTH values `inputs`, as a replay needs it."""
+    """Return the state vector after `previous`, as a replay needs it.
+
+    `inputs` are the values of its first INPUT_WIDTH columns, and of its last ones where these tell of other platforms;
+    without the latter the others stand where they stood.
+    """
     row = np.empty(console.width)
+    if console.others:
+        row[-console.others :] = inputs[INPUT_WIDTH:] if len(inputs) > INPUT_WIDTH else previous[-console.others :]
+        inputs = inputs[:INPUT_WIDTH]
     row[:INPUT_WIDTH] = inputs
     stages = console.decide, console.strike, console.step, console.look_around, console.force_feedback
     tick = in_order(*stages, mark)
@@ -174,7 +183,8 @@ def advance_block(previous: Row, rows: Row, console: Console) -> None:
 
     Args:
         previous: the state vector before the first of them.
-        rows: float64 [ticks, columns], the inputs in the first INPUT_WIDTH columns; the others are written.
+        rows: float64 [ticks, columns], the inputs in the first INPUT_WIDTH columns, and in the last ones where these
+            tell of other platforms; the rest is written.
         console: which console.
     """
     console.block(previous, rows, *_constants(console))

@@ -33,6 +33,8 @@ class ResolvedSession(Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     vehicle: VehicleProfile
     world: WorldProfile | None = None
     language: LanguageProfile = ENGLISH
+    fleet: tuple[VehicleProfile, ...] = ()
+    """The vehicles of `session.scenario.platforms`; of what one platform's bundle stores it is empty."""
 
 
 def assemble(resolved: ResolvedSession, execution: Execution) -> tuple[Console, ConsoleState]:
@@ -45,6 +47,7 @@ def assemble(resolved: ResolvedSession, execution: Execution) -> tuple[Console, 
         Pose(start.x_m, start.y_m, start.yaw_deg * RAD_PER_DEG),
         ground_of(environment, resolved.world),
         obstacles_of(resolved.world),
+        max(0, len(session.scenario.platforms) - 1),
     )
     console = build_console(
         cockpit_settings(resolved.cockpit, tick_hz),

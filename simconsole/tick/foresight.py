@@ -81,6 +81,7 @@ class _Parts(NamedTuple):
     recorder: BlockRecorder
     outputs: Sequence[PatientOutput]
     ahead: Callable[[], AheadInput] | None  # None: there is nobody
+    others: Callable[[], tuple[float, ...]] | None  # None: likewise
 
 
 class Foresight:
@@ -108,10 +109,12 @@ class Foresight:
         outputs: Sequence[Output],
         latencies: LatencyStatistics | None,
         ahead: Callable[[], AheadInput] | None,
+        others: Callable[[], tuple[float, ...]] | None = None,
     ) -> Self | None:
         """Return the foresight of a drive with these devices, commands of ROS side and ECU; None if a part has none.
 
-        `ahead` says whom the vehicle follows, None if there is nobody on the road.
+        `ahead` says whom the vehicle follows, None if there is nobody on the road; `others` where the session's other
+        platforms are, None if it has one.
         """
         devices, ros, ecu = sources
         if not (
@@ -126,7 +129,7 @@ class Foresight:
             return None
         return cls(
             console,
-            _Parts(devices=devices, ros=ros, ecu=ecu, recorder=recorder, outputs=patient, ahead=ahead),
+            _Parts(devices=devices, ros=ros, ecu=ecu, recorder=recorder, outputs=patient, ahead=ahead, others=others),
             latencies,
         )
 
@@ -141,6 +144,8 @@ class Foresight:
         rows = self._rows[:count]
         if self._parts.ahead is not None:
             rows[:, _AHEAD] = self._parts.ahead()  # the same until the last tick's outputs have looked
+        if self._parts.others is not None:
+            rows[:, -self._console.others :] = self._parts.others()  # likewise, until all platforms have made the ticks
         advance_block(state.vector, rows, self._console)
         if self._seated:
             count = _up_to_pause(rows)

@@ -1,6 +1,6 @@
 """The loop of one drive: inputs in, one tick, outputs out. It opens and closes nothing (session/lifecycle.py does)."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Final, NamedTuple, Protocol
 
 from simconsole.tick.advance import Console, ConsoleState, advance
@@ -82,6 +82,7 @@ class Components(NamedTuple):
     ecu: CommandSource = NobodyCommands()
     latencies: LatencyStatistics | None = None
     road_users: RoadUsers | None = None
+    others: Callable[[], tuple[float, ...]] | None = None  # where the other platforms are
     standby: Sequence[Standby] = ()  # called again and again while simulated time stands
 
 
@@ -94,7 +95,23 @@ def run(
     on_request: bool = False,
     at_once: bool = True,
 ) -> ConsoleState:
-    """Drive until `ticks` have passed or `finished` says so; return the last state.
+    """Drive until `ticks` have passed or `finished` says so; return the last state: `steps` to their end."""
+    last = state
+    for now in steps(console, state, components, ticks, finished, on_request, at_once):
+        last = now
+    return last
+
+
+def steps(
+    console: Console,
+    state: ConsoleState,
+    components: Components,
+    ticks: int,
+    finished: Callable[[Snapshot], bool] = lambda snapshot: False,
+    on_request: bool = False,
+    at_once: bool = True,
+) -> Iterator[ConsoleState]:
+    """Drive until `ticks` have passed or `finished` says so; yield the state after each tick or block of ticks.
 
     The order is fixed: pace, seat, faults, devices, commands, advance, recorder, outputs. Everything that enters
     `advance` is in the state vector that the recorder keeps, so that the drive replays. A tick with the event PAUSE is
@@ -110,6 +127,7 @@ def run(
     end, latencies = state.tick + ticks, components.latencies
     outputs = [(output, getattr(output, "hop", Hop.OTHERS)) for output in components.outputs]
     ahead_now, take_impact = _ahead_of(components), _impact_of(components)
+    others = components.others
     foresight = _foresight(console, components) if at_once else None
     while state.tick < end and not finished(snapshot):
         impact = take_impact()
@@ -121,6 +139,7 @@ def run(
                 snapshot = Snapshot(state.tick, console.tick_hz, state.vector)
                 for output, _ in outputs:
                     output.publish(snapshot)
+                yield state
                 continue
         raised = components.pace.wait()
         if components.seat is not None:
@@ -140,7 +159,8 @@ def run(
         if carried & _START:
             carried &= ~_PAUSE
         edges = EventInput(float(carried), faults, float(int(ecu_events.events) | carried_ecu))
-        inputs = TickInputs(sample=sample, ros=ros, events=edges, ecu=ecu, ahead=ahead, impact=impact)
+        beside = () if others is None else others()
+        inputs = TickInputs(sample=sample, ros=ros, events=edges, ecu=ecu, ahead=ahead, impact=impact, others=beside)
         before = state.vector
         state, snapshot = advance(state, inputs, console, mark)
         recorded = components.recorder.write(snapshot) | first_touch(before, snapshot.vector)
@@ -154,7 +174,7 @@ def run(
         else:
             carried = _PAUSE if int(snapshot.driver.edges) & _BUTTON_PAUSE else 0
         carried |= recorded
-    return state
+        yield state
 
 
 def _ahead_of(components: Components) -> Callable[[], AheadInput]:
@@ -183,7 +203,9 @@ def _foresight(console: Console, components: Components) -> Foresight | None:
         return None
     sources = (components.devices, components.commands, components.ecu)
     ahead = None if components.road_users is None else components.road_users.ahead
-    return Foresight.of(console, sources, components.recorder, components.outputs, components.latencies, ahead)
+    return Foresight.of(
+        console, sources, components.recorder, components.outputs, components.latencies, ahead, components.others
+    )
 
 
 def come_to_rest(console: Console, state: ConsoleState, recorder: Recorder) -> ConsoleState:

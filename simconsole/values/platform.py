@@ -94,4 +94,5 @@ class Platform(NamedTuple):
     height_m: float
     rear_overhang_m: float  # from base_link to the rear end
     solid: Solid | None = None  # None: its step takes no impact; where it strikes something a drive ends
+    others: int = 0  # as many other platforms it reacts to: circles at the end of `vector` (state_vector.OTHER)
     turns_in_place: bool = False  # it follows a speed and a yaw rate; a car is steered and driven by pedals

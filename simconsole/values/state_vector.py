@@ -1,7 +1,9 @@
 """The state vector, one tick as float64 values: the layout that log, hash, shared memory and replay share.
 
 It is the console's whole state: its first columns are the tick's inputs, then each stage's result, then the platform's
-own state. `advance` makes the next state vector from the last one and new inputs.
+own state. Of a session with several platforms the last columns are inputs, too: where the others are that this one
+reacts to (docs/decisions/0046-several-platforms.md). `advance` makes the next state vector from the last one and new
+inputs.
 """
 
 from typing import Final, NamedTuple
@@ -95,12 +97,29 @@ class TickInputs(NamedTuple):
     ecu: RemoteCommand = NO_COMMAND
     ahead: AheadInput = NO_AHEAD
     impact: ImpactInput = NO_IMPACT
+    others: tuple[float, ...] = ()
+    """The session's other platforms, each as `OTHER`."""
 
 
-def columns(platform_state: type[tuple[float, ...]]) -> tuple[str, ...]:
-    """Return the name of every column, `stage.field_unit`, for a platform with this state type."""
+OTHER: Final = ("x", "y", "radius")
+"""What a platform is told of another one, in m of map: a circle around its body."""
+
+
+def columns(platform_state: type[tuple[float, ...]], others: int = 0) -> tuple[str, ...]:
+    """Return the name of every column, `stage.field_unit`.
+
+    Args:
+        platform_state: the platform's state type.
+        others: how many other platforms it reacts to.
+    """
     parts = LAYOUT._asdict() | {"platform": Part(platform_state, PLATFORM_AT)}
-    return tuple(f"{stage}.{field}" for stage, part in parts.items() for field in part.names)
+    names = tuple(f"{stage}.{field}" for stage, part in parts.items() for field in part.names)
+    return (*names, *other_columns(others))
+
+
+def other_columns(others: int) -> tuple[str, ...]:
+    """Return the names of the columns that tell of so many other platforms."""
+    return tuple(f"others.{field}_{number}_m" for number in range(others) for field in OTHER)
 
 
 def input_vector(inputs: TickInputs) -> Row:

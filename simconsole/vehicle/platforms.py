@@ -4,10 +4,12 @@ from simconsole.profiles.vehicle import BallProfile, TurtlebotProfile, VehiclePr
 from simconsole.values.platform import NO_OBSTACLES, Ground, Obstacles, Platform, Pose
 
 
-def build(profile: VehicleProfile, pose: Pose, ground: Ground, obstacles: Obstacles = NO_OBSTACLES) -> Platform:
+def build(
+    profile: VehicleProfile, pose: Pose, ground: Ground, obstacles: Obstacles = NO_OBSTACLES, others: int = 0
+) -> Platform:
     """Return the vehicle of `profile`, standing at `pose` (m, rad, of base_link in map) on `ground`.
 
-    Only robots run into `obstacles`.
+    Only robots run into `obstacles`, and into as many `others` as the session has beside this one.
     """
     if isinstance(profile, BallProfile):
         from simconsole.vehicle.ball.ball_platform import build_ball
@@ -16,7 +18,7 @@ def build(profile: VehicleProfile, pose: Pose, ground: Ground, obstacles: Obstac
     if isinstance(profile, TurtlebotProfile):
         from simconsole.vehicle.turtlebot.turtlebot_platform import build_turtlebot
 
-        return build_turtlebot(profile, pose, ground, obstacles)
+        return build_turtlebot(profile, pose, ground, obstacles, others)
     from simconsole.vehicle.car.car_platform import build_car
 
     return build_car(profile, pose, ground)

@@ -12,23 +12,25 @@ from simconsole.bridge.console.plan_input import OnPlan, PlanInput
 from simconsole.bridge.console.published_tick import PublishedTick
 from simconsole.bridge.console.road_user_topics import RoadUserTopics
 from simconsole.bridge.console.surroundings import NOWHERE, Surroundings
-from simconsole.bridge.console.topics import ODOMETRY, ROSOUT, ROSOUT_TYPE, Outputs
+from simconsole.bridge.console.topics import CLOCK, GLOBAL_TOPICS, ODOMETRY, ROSOUT, ROSOUT_TYPE, Outputs
 from simconsole.bridge.console.view_topics import view_topics
 from simconsole.bridge.link.measurements import LateMeasurements
 from simconsole.bridge.messages import Registry, standard_registry
 from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.client_session import ClientSession
+from simconsole.bridge.protocol.lease import CommandDesk
 from simconsole.bridge.protocol.rosapi import RosApi
 from simconsole.bridge.protocol.server_protocol import Outcome, Router
-from simconsole.bridge.protocol.topic_registry import Origin
+from simconsole.bridge.protocol.topic_registry import Origin, Topic
 from simconsole.control.requests.refusals import broken_limit
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.link import WayProfile
 from simconsole.values.labels import arbitration_label, eased_label, is_eased
-from simconsole.values.signals import Event
 from simconsole.values.state_vector import LAYOUT, Snapshot
 
 _IMPLAUSIBLE_AT: Final = LAYOUT.ros_link.at("implausible")
+_OWN: Final = 0
+"""The console itself as an origin: clients' sessions are numbered from 1."""
 
 
 class _Measurement(NamedTuple):
@@ -51,6 +53,7 @@ class ConsoleBridge:
         on_act: OnAct | None = None,
         around: Surroundings = NOWHERE,
         on_plan: OnPlan | None = None,
+        beside: "ConsoleBridge | None" = None,
     ) -> None:
         """Build the topics of `profile`.
 
@@ -62,29 +65,34 @@ class ConsoleBridge:
             on_act: sees each act of an operator at once; without, they are kept until `take_acts`.
             around: what there is to tell of beside the state vector.
             on_plan: sees what a controller plans (`PlanInput`).
+            beside: that of the session's first platform, whose server this further one shares.
 
         Raises:
             ProfileError: the profile renames or rates a topic that does not exist, or gives two topics one name.
         """
         self.profile = profile
         self.inputs = BridgeInputs(on_command, on_events)
-        self.router = Router(
-            registry if registry is not None else standard_registry(),
-            profile.limits,
-            int(profile.lease_ms * 1e6),
-            self.inputs.refuse,
-        )
-        RosApi(self.router)
+        lease_ns = int(profile.lease_ms * 1e6)
+        if beside is None:
+            registry = registry if registry is not None else standard_registry()
+            self.router = Router(registry, profile.limits, lease_ns, self.inputs.refuse)
+            self.desk = self.router.desk
+            RosApi(self.router)
+        else:
+            self.router = beside.router
+            self.desk = CommandDesk(lease_ns, self.inputs.refuse)
+            self.router.desks.append(self.desk)
         self._acts: list[Act] = []
         self.operator = Operator(self.inputs.raise_events, on_act or self._keep_act)
         self.router.calls.add_builtin(profile.namespace + OPERATE, OPERATE_TYPE, self.operator.operate, Role.CONTROL)
         self._command_decoder = CommandDecoder(self.inputs, profile, is_robot=around.robot is not None)
-        self.router.on_new_commander = self._command_decoder.forget_stamps
+        self.desk.on_new_commander = self._command_decoder.forget_stamps
+        self.desk.on_lost = self.inputs.lose
         self._now_ns = 0
         self._out = Outputs(
             self.router.registry,
             profile,
-            lambda: bridge_status(self.router, self._now_ns),
+            lambda: bridge_status(self.router, self.desk, self._now_ns),
             around.route,
             around.signals,
             around.shown_map,
@@ -98,20 +106,26 @@ class ConsoleBridge:
         if profile.camera is not None and around.camera is not None:
             outputs = (*outputs, *CameraTopics(self.router.registry, profile.camera, around.camera).topics())
         self.names = topic_names(profile, [*(topic.name for topic in outputs), *(topic.name for topic in commands)])
+        if beside is not None:
+            outputs = tuple(output for output in outputs if output.name != CLOCK)  # which the first one tells
+        self._origin = None if beside is None else Origin(_OWN, profile.namespace.encode())
         self._schedule = OutputSchedule(outputs, self.names, profile)
         self._late = None if profile.link.measurements == WayProfile() else LateMeasurements[_Measurement](profile.link)
         self._newest_ns = 0  # stamp of the newest odometry that has gone out late
-        self._topics = {
-            output.name: self.router.add_output(output.name, output.type, latch=output.latched, shared=output.shared)
-            for output in self._schedule.outputs
-        }
-        self.router.add_shared(ROSOUT, ROSOUT_TYPE)
+        self._topics = {output.name: self._topic(output) for output in self._schedule.outputs}
+        if beside is None:
+            self.router.add_shared(ROSOUT, ROSOUT_TYPE)
         self._eased = False  # it has been told
         self._happened: tuple[float, float, float, float] | None = None
         self._steering = around.steering
         self._implausible = 0.0  # as many commands have been refused by the arbiter so far
         for command in commands:
-            self.router.add_command(self.names[command.name], command.type, command.accept, command.leased)
+            self.router.add_command(self.names[command.name], command.type, command.accept, command.leased, self.desk)
+
+    def _topic(self, output: ScheduledOutput) -> Topic:
+        """Return the server's topic of an output: platforms have /tf and /tf_static together."""
+        known = self.router.topic(output.name) if output.standard in GLOBAL_TOPICS else None
+        return known or self.router.add_output(output.name, output.type, latch=output.latched, shared=output.shared)
 
     def publish(self, snapshot: Snapshot, now_ns: int, *, odometry: bool = False) -> int | None:
         """Queue every message of `snapshot` that is due and wanted; with `odometry`, that in any case.
@@ -123,7 +137,7 @@ class ConsoleBridge:
         self.keep_time(snapshot, now_ns)
         broken = self._broken_limit(snapshot)
         if broken:
-            self.router.tell_commander("error", f"command not followed: {broken}", now_ns)
+            self.router.tell_commander(self.desk, "error", f"command not followed: {broken}", now_ns)
         tick = self._tell(snapshot, broken, now_ns)
         for output in self._schedule.due(snapshot, odometry=odometry):
             topic, message = self._topics[output.name], None
@@ -134,7 +148,7 @@ class ConsoleBridge:
                 told = _Measurement(output, snapshot.t_ns, message)
                 self._late.send(output.standard, snapshot.tick, snapshot.tick_hz, told)
             elif message is not None:
-                self.router.topic_registry.distribute(topic, message, now_ns)
+                self.router.topic_registry.distribute(topic, message, now_ns, self._origin if topic.latch else None)
         return snapshot.t_ns if self._late is None else self._tell_late(self._late, snapshot.tick, now_ns)
 
     def _tell_late(self, late: LateMeasurements[_Measurement], tick: int, now_ns: int) -> int | None:
@@ -209,8 +223,5 @@ class ConsoleBridge:
         return self.router.receive_plain(session, name, plain, now_ns, origin)
 
     def disconnect(self, session: ClientSession, now_ns: int) -> bool:
-        """Remove a client; if it was commanding, raise COMMANDER_LOST and return True."""
-        commanded = self.router.disconnect(session, now_ns)
-        if commanded:
-            self.inputs.raise_events(int(Event.COMMANDER_LOST))
-        return commanded
+        """Remove a client; a platform that it commanded gets COMMANDER_LOST. Return whether there is one."""
+        return self.router.disconnect(session, now_ns)

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from simconsole.values.signals import NEVER_TICKS, NO_COMMAND, EventInput, RemoteCommand
+from simconsole.values.signals import NEVER_TICKS, NO_COMMAND, Event, EventInput, RemoteCommand
 from simconsole.values.units import NS_PER_S
 
 OnCommand = Callable[[RemoteCommand, int | None], None]
@@ -26,6 +26,8 @@ class BridgeInputs:
         """The stamp of the newest command, None if it had none."""
         self.tick = 0
         """The last finished tick, set by whoever calls `take`."""
+        self.lost_at: float | None = None
+        """The command's sequence number when its commander vanished."""
         self._receipt_tick = 0
         self._events = 0
         self._on_command = on_command
@@ -66,6 +68,11 @@ class BridgeInputs:
         self._events |= events
         if self._on_events is not None:
             self._on_events(events)
+
+    def lose(self) -> None:
+        """Note that the commander is gone: an event, and no answer of theirs is to be waited for."""
+        self.lost_at = self.command.sequence
+        self.raise_events(int(Event.COMMANDER_LOST))
 
     def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
         """Return the command with its age for the coming `tick`, and the events since the last call.

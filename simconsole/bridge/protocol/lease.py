@@ -1,5 +1,7 @@
 """One commander at a time: the lease starts with the first valid command and ends a while after the last."""
 
+from collections.abc import Callable
+
 
 class Lease:
     """Who commands the console. Clients are numbers; time is given, in ns."""
@@ -31,3 +33,21 @@ class Lease:
         if held:
             self._holder = None
         return held
+
+
+class CommandDesk:
+    """Where the commands of one platform arrive: its lease, and who is told of refusals and of a change of commander.
+
+    Attributes:
+        lease: of who commands the platform.
+        on_refused: called for each refused command of a client that may command.
+        on_new_commander: called when a command comes while nobody holds the lease, before it is checked.
+        on_lost: called when the client that held the lease is gone.
+    """
+
+    def __init__(self, lease_ns: int, on_refused: Callable[[], None] = lambda: None) -> None:
+        """Start with nobody in command."""
+        self.lease = Lease(lease_ns)
+        self.on_refused = on_refused
+        self.on_new_commander: Callable[[], None] = lambda: None
+        self.on_lost: Callable[[], None] = lambda: None

@@ -14,7 +14,7 @@ from simconsole.bridge.protocol.access import OPEN, Role, message_limit
 from simconsole.bridge.protocol.calls import Calls
 from simconsole.bridge.protocol.client_session import ClientSession, MessageCounts, resolve_topic
 from simconsole.bridge.protocol.fragments import FragmentAssembler
-from simconsole.bridge.protocol.lease import Lease
+from simconsole.bridge.protocol.lease import CommandDesk
 from simconsole.bridge.protocol.message_decoding import (
     Binary,
     DecodedMessage,
@@ -78,11 +78,9 @@ class Router:
         """Start without topics. `on_refused` is called for each refused command of a client that may command."""
         self.registry = registry
         self.topic_registry = TopicRegistry(registry, limits)
-        self.lease = Lease(lease_ns)
-        self.on_new_commander: Callable[[], None] = lambda: None
-        """Called when a command comes while nobody holds the lease, before it is checked."""
+        self.desk = CommandDesk(lease_ns, on_refused)
+        self.desks = [self.desk]
         self._limits = limits
-        self._on_refused = on_refused
         self._commands: dict[bytes, _CommandReader] = {}
         self._sessions: dict[int, ClientSession] = {}
         self._numbers = 0
@@ -145,9 +143,11 @@ class Router:
         """Add a topic that the console publishes as its clients may, and that stays without any of them."""
         self.topic_registry.add(Topic(name, self.registry.resolve(type_name), RELAY_DEPTH, stays=True))
 
-    def add_command(self, name: str, type_name: str, accept: Accept, leased: bool = True) -> None:
-        """Add a topic by which clients command the console."""
-        topic_type, command = self.registry.resolve(type_name), Command(accept, leased)
+    def add_command(
+        self, name: str, type_name: str, accept: Accept, leased: bool = True, desk: CommandDesk | None = None
+    ) -> None:
+        """Add a topic by which clients command the platform of `desk`, the first one without."""
+        topic_type, command = self.registry.resolve(type_name), Command(accept, desk or self.desk if leased else None)
         topic = Topic(name, topic_type, RELAY_DEPTH, owned=True, command=command)
         self.topic_registry.add(topic)
         reader = msgspec.json.Decoder(self.registry.struct(topic_type))
@@ -179,14 +179,16 @@ class Router:
         return session
 
     def disconnect(self, session: ClientSession, now_ns: int) -> bool:
-        """Remove a client and everything of it; return whether it was commanding the console."""
+        """Remove a client and everything of it; return whether it was commanding a platform."""
         if self._sessions.pop(session.number, None) is None:
             return False
         self._past_counts = self._past_counts.plus(session.counts())
         self.topic_registry.remove_client(session)
         self.calls.disconnect(session)
         session.send_queue.close()
-        return self.lease.release(session.number, now_ns)
+        for desk in (left := [desk for desk in self.desks if desk.lease.release(session.number, now_ns)]):
+            desk.on_lost()
+        return bool(left)
 
     def has_subscribers(self, name: str) -> bool:
         """Return whether publishing on an output would reach anyone, now or by a latch."""
@@ -247,22 +249,22 @@ class Router:
         # Mistakes of other clients must not count against the commander.
         if session.role < Role.CONTROL:
             pass
-        elif topic is not None and topic.command is not None and topic.command.leased:
-            if self.lease.is_open_to(session.number, now_ns):
-                self._on_refused()
-        elif not fields and self.lease.holder(now_ns) == session.number:
-            self._on_refused()
+        elif topic is not None and topic.command is not None and topic.command.desk is not None:
+            if topic.command.desk.lease.is_open_to(session.number, now_ns):
+                topic.command.desk.on_refused()
+        elif not fields:
+            for desk in (desk for desk in self.desks if desk.lease.holder(now_ns) == session.number):
+                desk.on_refused()
         op = fields.get("op")
         place = " ".join(part for part in (op if isinstance(op, str) else "", name) if part)
         session.send_status("error", f"{place[:300]}: {reason}" if place else reason, id_of(fields))
         return Outcome("refused", name, reason)
 
-    def tell_commander(self, level: str, text: str, now_ns: int) -> None:
-        """Send a status message to the client that holds the lease, if one does."""
-        holder = self.lease.holder(now_ns)
-        for session in self.sessions:
-            if session.number == holder:
-                session.send_status(level, text)
+    def tell_commander(self, desk: CommandDesk, level: str, text: str, now_ns: int) -> None:
+        """Send a status message to the client that holds the lease of a desk, if one does."""
+        session = self._sessions.get(desk.lease.holder(now_ns) or 0)
+        if session is not None:
+            session.send_status(level, text)
 
     def _apply(self, session: ClientSession, operation: Operation, fields: dict[str, Any], now_ns: int) -> Outcome:
         if isinstance(operation, Status):
@@ -361,16 +363,17 @@ class Router:
     ) -> Outcome:
         """Follow a command; `read` returns it as `Accept` takes it, and is called once it may be followed."""
         self._require(session, Role.CONTROL)
-        if command.leased and not session.rate_limiter.allows(now_ns):
+        desk = command.desk
+        if desk is not None and not session.rate_limiter.allows(now_ns):
             return self._throttle(session, topic.name, now_ns)
-        if command.leased and not self.lease.is_open_to(session.number, now_ns):
+        if desk is not None and not desk.lease.is_open_to(session.number, now_ns):
             raise RemoteProtocolError("another client commands the console")
         plain, message = read()
-        if command.leased and self.lease.holder(now_ns) is None:
-            self.on_new_commander()
+        if desk is not None and desk.lease.holder(now_ns) is None:
+            desk.on_new_commander()
         command.accept(plain, message, now_ns)
-        if command.leased:
-            self.lease.renew(session.number, now_ns)
+        if desk is not None:
+            desk.lease.renew(session.number, now_ns)
         self.topic_registry.distribute(topic, message, now_ns)
         return Outcome("command", topic.name, "")
 

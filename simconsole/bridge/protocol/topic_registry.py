@@ -5,6 +5,7 @@ from typing import Any, Final, NamedTuple
 
 from simconsole.bridge.messages import Registry
 from simconsole.bridge.protocol.client_session import ClientSession
+from simconsole.bridge.protocol.lease import CommandDesk
 from simconsole.bridge.protocol.message_encoding import PLAIN_JSON, Encoder, Encoding
 from simconsole.bridge.protocol.operations import NO_QOS, Advertise, Publish, Qos, Subscribe, publish_head
 from simconsole.bridge.protocol.subscription_queue import SubscriptionQueue
@@ -25,7 +26,7 @@ class Command(NamedTuple):
     """A topic by which clients command the console."""
 
     accept: Accept
-    leased: bool  # only for the holder of the lease; a request such as an emergency stop is open to everyone
+    desk: CommandDesk | None  # only the holder of its lease; None: open to everyone, such as an emergency stop
 
 
 class Origin(NamedTuple):

@@ -8,7 +8,7 @@ import logging
 import selectors
 import socket
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
@@ -45,6 +45,22 @@ _CHECK_S: Final = 0.25
 _logger = logging.getLogger("simconsole.bridge.transport.lockstep_server")
 
 
+def in_lockstep(profile: BridgeProfile, odometry_hz: float) -> BridgeProfile:
+    """Return the profile with another rate of /odom."""
+    return msgspec.structs.replace(profile, rates_hz={**profile.rates_hz, ODOMETRY: odometry_hz})
+
+
+def listeners(console: ConsoleBridge) -> int:
+    """Return how many clients hear a platform's odometry: those that may answer it."""
+    topic = console.router.topic(console.names[ODOMETRY])
+    return 0 if topic is None else len(topic.subscribers)
+
+
+def acts_of(console: ConsoleBridge) -> list[bytes]:
+    """Return what operators have done with a platform since the last call, each as JSON."""
+    return [msgspec.json.encode(act) for act in console.take_acts()]
+
+
 class LockstepBridge:
     """A rosbridge server that lives inside the tick loop. Its clock is the simulated time of the last snapshot."""
 
@@ -57,6 +73,7 @@ class LockstepBridge:
         folder: Path | None = None,
         drive: str | None = None,
         around: Surroundings = NOWHERE,
+        platforms: int = 1,
     ) -> None:
         """Listen on the profile's host and port.
 
@@ -67,16 +84,16 @@ class LockstepBridge:
             drive: the nonce of the drive whose bridge it is.
             around: what there is to tell of beside the state vector.
             odometry_hz: rate of /odom in place of the profile's: the control rate, so that every answer is waited for.
+            platforms: how many one client may command.
 
         Raises:
             BridgeError: the address cannot be listened on.
             ProfileError: as `ConsoleBridge`, or its certificate or tokens cannot be used.
         """
         if odometry_hz is not None:
-            commands_hz = max(profile.limits.commands_hz, _COMMANDS_PER_ODOMETRY * odometry_hz)
+            commands_hz = max(profile.limits.commands_hz, _COMMANDS_PER_ODOMETRY * odometry_hz) * platforms
             limits = msgspec.structs.replace(profile.limits, commands_hz=commands_hz)
-            rates_hz = {**profile.rates_hz, ODOMETRY: odometry_hz}
-            profile = msgspec.structs.replace(profile, rates_hz=rates_hz, limits=limits)
+            profile = msgspec.structs.replace(in_lockstep(profile, odometry_hz), limits=limits)
         registry = load_registry(profile) if registry is None else registry
         self.console = ConsoleBridge(
             profile,
@@ -90,8 +107,6 @@ class LockstepBridge:
         self._tls = load_tls(profile)
         self._profile = profile
         self._now_ns = 0
-        self._lost_at: float | None = None
-        """The command's sequence number when the commander vanished."""
         self._closing = False
         self._next_check_s = 0.0
         self._connections: dict[LockstepConnection, float] = {}
@@ -132,26 +147,29 @@ class LockstepBridge:
 
     def take_acts(self) -> list[bytes]:
         """Return what operators have done since the last call, each as JSON."""
-        return [msgspec.json.encode(act) for act in self.console.take_acts()]
+        return acts_of(self.console)
 
-    def wait_for_client(self, timeout_s: float) -> bool:
-        """Serve until a client has subscribed to odometry; False when none did in time (wall time)."""
-        odometry = self.console.names[ODOMETRY]
+    def wait_for_client(self, timeout_s: float, of: Sequence[ConsoleBridge] = ()) -> bool:
+        """Serve until clients have subscribed to the odometry of the platforms `of`, that of the first without.
+
+        False when they did not in time (wall time).
+        """
         deadline = time.monotonic() + timeout_s
-        while not any(odometry in session.queues for session in self.console.router.sessions):
+        while not all(listeners(console) for console in of or (self.console,)):
             left_s = deadline - time.monotonic()
             if left_s <= 0.0:
                 return False
             self._serve(left_s)
         return True
 
-    def publish(self, snapshot: Snapshot) -> None:
-        """Send what is due of a snapshot and serve what has arrived, without waiting."""
+    def publish(self, snapshot: Snapshot, of: ConsoleBridge | None = None) -> None:
+        """Send what is due of a snapshot and serve what has arrived, without waiting; `of` as of `exchange`."""
+        console = of or self.console
         self._now_ns = snapshot.t_ns
-        self.console.inputs.tick = snapshot.tick
+        console.inputs.tick = snapshot.tick
         self._serve(0.0)
         self._record()
-        self.console.publish(snapshot, self._now_ns)
+        console.publish(snapshot, self._now_ns)
         self._pump_ros2()
         self._flush()
 
@@ -161,22 +179,30 @@ class LockstepBridge:
         self._pump_ros2()
         self._flush()
 
-    def exchange(self, snapshot: Snapshot, timeout_s: float = 2.0, stop: Callable[[], bool] = lambda: False) -> bool:
+    def exchange(
+        self,
+        snapshot: Snapshot,
+        timeout_s: float = 2.0,
+        stop: Callable[[], bool] = lambda: False,
+        of: ConsoleBridge | None = None,
+    ) -> bool:
         """Send a snapshot, odometry in any case, and wait for the command that answers it.
 
         That is the first accepted command whose stamp equals the odometry's; a command of a type without a stamp
         answers by arriving. Whatever arrives before it is applied too. Over a link with errors the odometry may be an
-        earlier one; one that is lost is not waited for.
+        earlier one; one that is lost is not waited for. `of` is the platform whose snapshot it is, unless it is that of
+        the first.
 
         Returns:
             False when no answer came within `timeout_s` of wall time or until `stop`, or the commander is gone and no
             other has spoken.
         """
-        inputs = self.console.inputs
+        console = of or self.console
+        inputs = console.inputs
         self._now_ns = snapshot.t_ns
         inputs.tick = snapshot.tick
         self._record()
-        asked_ns = self.console.publish(snapshot, self._now_ns, odometry=True)
+        asked_ns = console.publish(snapshot, self._now_ns, odometry=True)
         self._pump_ros2()
         self._flush()
         if asked_ns is None:
@@ -188,7 +214,7 @@ class LockstepBridge:
             if inputs.command.sequence != before and inputs.stamp_ns in (asked_ns, None):
                 return True
             left_s = deadline - time.monotonic()
-            if left_s <= 0.0 or stop() or inputs.command.sequence == self._lost_at or not self.clients:
+            if left_s <= 0.0 or stop() or inputs.command.sequence == inputs.lost_at or not self.clients:
                 return False
             self._serve(min(left_s, _CHECK_S))
 
@@ -337,8 +363,6 @@ class LockstepBridge:
         session, connection.session = connection.session, None
         if session is not None:
             commanded = self.console.disconnect(session, self._now_ns)
-            if commanded:
-                self._lost_at = self.console.inputs.command.sequence
             log_departure(_logger, connection.peer, commanded and not self._closing)
 
     def _send_waiting(self, connection: LockstepConnection) -> None:

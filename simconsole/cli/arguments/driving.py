@@ -12,7 +12,15 @@ _MAX_DELAY_MS: Final = 6000.0
 
 
 def driving(commands: Any) -> None:
-    """Add demo, drive, check, scenario and sweep."""
+    """Add demo, drive, check, scenario, turtlebot and sweep."""
+    _demo_and_drive(commands)
+    _check(commands)
+    _scenario(commands)
+    _turtlebot(commands)
+    _sweep(commands)
+
+
+def _demo_and_drive(commands: Any) -> None:
     demo = command(commands, "demo", "demo:demo", "the whole way once, with no hardware: person, autopilot, report")
     demo.add_argument("--perfect", action="store_true", help="exact odometry and no delay on the autopilot's link")
     demo.add_argument("--realtime", action="store_true", help="pace it, with every worker in its own process")
@@ -37,6 +45,8 @@ def driving(commands: Any) -> None:
     for one in (demo, drive):
         one.add_argument("--no-pack", action="store_true", help="leave the log as it was written")
 
+
+def _check(commands: Any) -> None:
     check = command(commands, "check", "check:check", "drive scripted scenarios headless against their goldens")
     check.add_argument("scenarios", nargs="+", metavar="SCENARIO", help="by name, a .yaml file, or a folder")
     check.add_argument(
@@ -48,6 +58,8 @@ def driving(commands: Any) -> None:
     check.add_argument("--review", metavar="FILE", help="write accepted and driven over each other, where they differ")
     check.add_argument("--update-golden", action="store_true", help="accept what was driven as the new golden")
 
+
+def _scenario(commands: Any) -> None:
     scenario = command(commands, "scenario", "scenarios.importing:scenario", "import a scenario of another format")
     scenario.add_argument("action", choices=("import",))
     scenario.add_argument("name", metavar="FILE", help="OpenSCENARIO XML 1.x, .xosc")
@@ -59,6 +71,19 @@ def driving(commands: Any) -> None:
     scenario.add_argument("--partly", action="store_true", help="leave out what is not understood, and list it")
     scenario.add_argument("--out", metavar="FILE", help="the scenario (default: its name here, .yaml)")
 
+
+def _turtlebot(commands: Any) -> None:
+    robots = command(commands, "turtlebot", "turtlebot.command:turtlebot", "three robots: map, share tasks out, drive")
+    robots.add_argument("--session", default="turtlebot3_team", metavar="SESSION", help="with platforms, in an arena")
+    robots.add_argument("--seed", type=int, default=0, metavar="N", help="of the errors of lidar and odometry")
+    robots.add_argument(
+        "--objective", choices=("sum", "makespan"), default="sum", help="what the allocation makes least (default: sum)"
+    )
+    robots.add_argument("--out", metavar="DIR", help="where all goes (default: out/turtlebot-TIME)")
+    robots.add_argument("--no-pack", action="store_true", help="leave the logs as they were written")
+
+
+def _sweep(commands: Any) -> None:
     sweep = command(commands, "sweep", "sweep.command:sweep", "many drives of one plan into one table")
     sweep.add_argument("plan", metavar="PLAN", help="a .yaml file: sessions or scenarios, values, seeds")
     sweep.add_argument("--jobs", type=int, default=os.cpu_count() or 1, metavar="N", help="processes (default: cores)")

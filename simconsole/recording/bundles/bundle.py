@@ -7,7 +7,7 @@ checksums: a killed drive is a bundle too.
 """
 
 import contextlib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import partial
 from hashlib import sha256
 from pathlib import Path
@@ -173,13 +173,24 @@ class BundleWriter:
             self.log.close()
             raise
 
+    def announce(self, platforms: Iterable[str]) -> None:
+        """Name the folders in which the session's other platforms will have their bundles, before the first tick.
+
+        Raises:
+            RecordingError: it cannot be written.
+        """
+        self._extend(platforms=dict.fromkeys(platforms, ""))
+
     def extend_provenance(self, provenance: Provenance) -> None:
         """Keep what has become known since the start, at once and before the first tick, so that no kill can lose it.
 
         Raises:
             RecordingError: it cannot be written.
         """
-        self.manifest = msgspec.structs.replace(self.manifest, provenance=provenance)
+        self._extend(provenance=provenance)
+
+    def _extend(self, **fields: Any) -> None:
+        self.manifest = msgspec.structs.replace(self.manifest, **fields)
         try:
             with unbroken():
                 self._write_first()
@@ -191,8 +202,10 @@ class BundleWriter:
         write_manifest(self.folder, self.manifest)
         reserve(self.folder / MANIFEST, self._room_bytes)
 
-    def finish(self, summary: Mapping[str, Any]) -> Manifest:
+    def finish(self, summary: Mapping[str, Any], platforms: Mapping[str, str] | None = None) -> Manifest:
         """Close the log and write the manifest with its checksums; `summary` holds JSON values.
+
+        `platforms` has the last hash of each of the session's other platforms, whose bundles are finished.
 
         Where the manifest cannot be written, the unfinished one stays, and the returned manifest says so. A folder that
         was removed during the drive is made again, with all that was recorded.
@@ -201,7 +214,11 @@ class BundleWriter:
             self._put_back()
         self.log.close()
         self.manifest = msgspec.structs.replace(
-            self.manifest, ticks=self.log.ticks, digest=self.log.digest.hex(), recording_failure=self.log.failure
+            self.manifest,
+            ticks=self.log.ticks,
+            digest=self.log.digest.hex(),
+            recording_failure=self.log.failure,
+            platforms=dict(platforms or self.manifest.platforms),
         )
         try:
             files = {**self.manifest.files, LOG: self._log_entry()}
@@ -310,7 +327,8 @@ def unlisted(folder: Path, manifest: Manifest) -> list[str]:
     found = sorted(path.name for path in folder.iterdir())
     if not manifest.finished:
         found = [name for name in found if name != LOG and not name.endswith(DRAFT)]
-    return [name for name in found if name not in manifest.files and name not in (MANIFEST, SIGNATURE)]
+    known = {*manifest.files, *manifest.platforms, MANIFEST, SIGNATURE}
+    return [name for name in found if name not in known]
 
 
 def leftovers(manifest: Manifest) -> set[str]:

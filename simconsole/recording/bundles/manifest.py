@@ -45,6 +45,7 @@ class Manifest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
     ticks: int = 0
     digest: str = ""  # chained hash after the last tick, hexadecimal
     recording_failure: str | None = None
+    platforms: dict[str, str] = {}  # bundles of the session's other platforms, folder and hash as of `digest`
     packed_log: FileEntry | None = None  # the drive.log that drive.parquet stands for, and gives back
     summary: dict[str, Any] = {}  # figures of the session: lateness percentiles, counters
 
@@ -98,7 +99,7 @@ def parse_manifest(folder: Path, content: bytes) -> Manifest:
         manifest = msgspec.convert(raw, Manifest)
     except (msgspec.MsgspecError, RecursionError) as error:
         raise RecordingError(f"{path}: {error}") from None
-    for name in manifest.files:
+    for name in (*manifest.files, *manifest.platforms):
         plain_name(name, folder)
     return manifest
 

@@ -84,9 +84,10 @@ def replay_bundle(folder: Path, tolerances: Mapping[str, float] | None = None) -
         bundle.log.header,
         Remade(
             columns=console.columns,
-            no_inputs=input_vector(TickInputs(NO_SAMPLE, NO_COMMAND, NO_EVENTS)),
+            no_inputs=input_vector(TickInputs(NO_SAMPLE, NO_COMMAND, NO_EVENTS, others=(0.0,) * console.others)),
             initial=state.vector,
             advance=lambda tick, previous, inputs: advance_vector(previous, inputs, console),
+            others=console.others,
         ),
         tolerances=tolerances,
         first_tick=1,

@@ -79,6 +79,7 @@ def examine(folder: Path, signer: Path | None = None) -> Examination:
         problems += log_problems(open_log(folder, manifest), manifest)
     except RecordingError as error:
         problems.append(str(error))
+    problems += platform_problems(folder, manifest)
     left = leftovers(manifest)
     names = unlisted(folder, manifest)
     strays = [f"{folder / name}: not in {MANIFEST}: nothing vouches for it" for name in names if name not in left]
@@ -96,6 +97,20 @@ def examine(folder: Path, signer: Path | None = None) -> Examination:
             f"{folder / MANIFEST}: schema 1, which does not vouch for itself: changes in its own figures go unnoticed"
         )
     return Examination(problems, remarks)
+
+
+def platform_problems(folder: Path, manifest: Manifest) -> Iterator[str]:
+    """Yield what is wrong with the bundles of the session's other platforms."""
+    for name, digest in manifest.platforms.items():
+        try:
+            problems = examine(folder / name).problems
+            found = read_manifest(folder / name).digest
+        except RecordingError as error:
+            yield str(error)
+            continue
+        yield from problems
+        if manifest.finished and found != digest:
+            yield f"{folder / name}: hash {found}, {folder / MANIFEST} says {digest}"
 
 
 def coverage(folder: Path) -> Coverage:

@@ -148,10 +148,12 @@ def snapshots(
     header = recording.header
     here = [f"{stage}.{field}" for stage, part in LAYOUT._asdict().items() for field in part.names]
     here += [f"platform.{field}" for field in platform]
+    beside = [name for name in header.columns if name.startswith("others.")] if platform else []
+    here += beside
     known = set(header.columns)
     names = [name for name in here if name in known]
     places = [here.index(name) for name in names]
-    empty = np.concatenate((empty_vector(), np.zeros(len(platform))))
+    empty = np.concatenate((empty_vector(), np.zeros(len(platform) + len(beside))))
     for block in recording.blocks(names):
         vectors = np.tile(empty, (len(block.ticks), 1))
         vectors[:, places] = block.vectors

@@ -2,8 +2,9 @@
 
 from typing import Final, NamedTuple
 
+from simconsole.values.kernels import Row
 from simconsole.values.layout import Part
-from simconsole.values.state_vector import PLATFORM_AT
+from simconsole.values.state_vector import OTHER, PLATFORM_AT
 
 STEP_S: Final = 0.001
 
@@ -87,10 +88,18 @@ class RobotParameters(NamedTuple):
     idle_w: float
     drive_w: float  # at full speed, beside `idle_w`
     scan_ms: float
+    others: float  # other robots, at the end of the state vector
     segments: float  # straight obstacles, each x, y of both ends
     circles: float  # round ones, each x, y, radius
 
 
 ROBOT: Final = Part(RobotState, PLATFORM_AT)
+OTHERS_AT: Final = ROBOT.stop
+"""Where the other robots begin in the state vector, each x, y and radius of its body in map."""
 PARAMETERS: Final = Part(RobotParameters)
 OBSTACLES_AT: Final = PARAMETERS.stop
+
+
+def others_of(vector: Row) -> Row:
+    """Return the session's other robots as this one was told of them: [N, 3], x, y and radius of the body in m."""
+    return vector[OTHERS_AT:].reshape(-1, len(OTHER))

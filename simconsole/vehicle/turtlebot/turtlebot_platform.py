@@ -16,9 +16,11 @@ from simconsole.vehicle.turtlebot.turtlebot_step import step, vehicle_state
 _SEEDS: Final = 2147483645
 
 
-def build_turtlebot(profile: TurtlebotProfile, pose: Pose, ground: Ground, obstacles: Obstacles) -> Platform:
-    """Return the robot at rest. The floor is level; its friction limits what the wheels pass on."""
-    parameters = robot_parameters(profile, ground, obstacles)
+def build_turtlebot(
+    profile: TurtlebotProfile, pose: Pose, ground: Ground, obstacles: Obstacles, others: int = 0
+) -> Platform:
+    """Return the robot at rest, among `others`. The floor is level; its friction limits what the wheels pass on."""
+    parameters = robot_parameters(profile, ground, obstacles, others)
     yaw = wrap_angle(pose.yaw_rad)
     here = ScanKnot(*(0.0,) * len(ScanKnot._fields))._replace(x_m=pose.x_m, y_m=pose.y_m, yaw_rad=yaw)
     seed = 1.0 + float(int(even(profile.odometry.seed, Channel.WHEEL_SLIP, 0) * _SEEDS))
@@ -44,11 +46,14 @@ def build_turtlebot(profile: TurtlebotProfile, pose: Pose, ground: Ground, obsta
         width_m=profile.width_m,
         height_m=profile.height_m,
         rear_overhang_m=0.5 * profile.length_m - profile.body_x_m,
+        others=others,
         turns_in_place=True,
     )
 
 
-def robot_parameters(profile: TurtlebotProfile, ground: Ground, obstacles: Obstacles) -> RobotParameters:
+def robot_parameters(
+    profile: TurtlebotProfile, ground: Ground, obstacles: Obstacles, others: int = 0
+) -> RobotParameters:
     """Return what stays constant over a drive."""
     grip = ground.friction * STANDARD_GRAVITY_MPS2
     return RobotParameters(
@@ -68,6 +73,7 @@ def robot_parameters(profile: TurtlebotProfile, ground: Ground, obstacles: Obsta
         idle_w=profile.battery.idle_w,
         drive_w=profile.battery.drive_w,
         scan_ms=round(1000.0 * profile.lidar.turn_s),
+        others=float(others),
         segments=float(len(obstacles.segments)),
         circles=float(len(obstacles.circles)),
     )

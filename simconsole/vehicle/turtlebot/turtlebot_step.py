@@ -60,7 +60,7 @@ def step(previous: Row, row: Row, parameters: Row, ground: Row, substeps: int) -
     left_rad = 0.0
     right_rad = 0.0
     for _ in range(substeps):
-        motion = moved(motion, wanted, most, p, parameters)
+        motion = moved(motion, wanted, most, p, parameters, row)
         left_rad += STEP_S * motion.left_radps
         right_rad += STEP_S * motion.right_radps
     state = measured(before, motion, left_rad, right_rad, p, substeps)
@@ -88,8 +88,11 @@ def wanted_wheels(p: RobotParameters, command: VehicleCommand, brake: float) -> 
 
 
 @kernel
-def moved(s: Motion, wanted: Wheels, most_radps: float, p: RobotParameters, parameters: Row) -> Motion:
-    """Return the motion 1 ms later; the speed of each wheel changes by at most `most_radps`."""
+def moved(s: Motion, wanted: Wheels, most_radps: float, p: RobotParameters, parameters: Row, row: Row) -> Motion:
+    """Return the motion 1 ms later; the speed of each wheel changes by at most `most_radps`.
+
+    What stands is in `parameters`, where the other robots are in `row`.
+    """
     left = approach(s.left_radps, wanted.left_radps, most_radps)
     right = approach(s.right_radps, wanted.right_radps, most_radps)
     speed = 0.5 * (left + right) * p.wheel_radius_m
@@ -101,7 +104,14 @@ def moved(s: Motion, wanted: Wheels, most_radps: float, p: RobotParameters, para
     x = s.x_m + STEP_S * speed * cos(middle)
     y = s.y_m + STEP_S * speed * sin(middle)
     out = pushed_out(
-        x + p.body_x_m * c, y + p.body_x_m * d, p.body_radius_m, parameters, int(p.segments), int(p.circles)
+        x + p.body_x_m * c,
+        y + p.body_x_m * d,
+        p.body_radius_m,
+        parameters,
+        int(p.segments),
+        int(p.circles),
+        row,
+        int(p.others),
     )
     x += out.push_x_m
     y += out.push_y_m

@@ -43,6 +43,19 @@ def read_ros_map(path: Path, title: str) -> ArenaProfile:
     Raises:
         ProfileError: the files cannot be read as such a map; names file and key.
     """
+    grid = read_grid(path)
+    try:
+        return arena_of_grid(grid, title)
+    except (ProfileError, ValueError) as problem:
+        raise ProfileError(f"{path}: {problem}") from None
+
+
+def read_grid(path: Path) -> Grid:
+    """Return a map as an occupancy grid.
+
+    Raises:
+        ProfileError: the files cannot be read as such a map; names file and key.
+    """
     known = convert(parse(read_text_of(path, MAX_DATA_BYTES), str(path)), RosMap, str(path))
     if not all(map(math.isfinite, known.origin)):
         raise ProfileError(f"{path}: origin: value {list(known.origin)}: finite numbers")
@@ -55,10 +68,7 @@ def read_ros_map(path: Path, title: str) -> ArenaProfile:
     cells = np.full(shades.shape, UNKNOWN, dtype=np.int8)
     cells[share > known.occupied_thresh] = OCCUPIED
     cells[share < known.free_thresh] = FREE
-    try:
-        return arena_of_grid(Grid(cells[::-1], known.resolution, known.origin[0], known.origin[1]), title)
-    except (ProfileError, ValueError) as problem:
-        raise ProfileError(f"{path}: {problem}") from None
+    return Grid(cells[::-1], known.resolution, known.origin[0], known.origin[1])
 
 
 def _image(path: Path) -> NDArray[np.float64]:

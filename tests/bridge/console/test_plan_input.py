@@ -48,7 +48,7 @@ def test_a_plan_commands_nothing_and_needs_no_lease(snapshot: Any) -> None:
     told = Told()
     assert told.say(path()).kind == "command"
     assert told.bridge.inputs.command.sequence == 0.0
-    assert told.bridge.router.lease.holder(0) is None
+    assert told.bridge.router.desk.lease.holder(0) is None
 
 
 def test_no_plan_is_one_without_places() -> None:

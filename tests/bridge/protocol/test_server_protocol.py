@@ -238,7 +238,7 @@ class Commanded:
         self.taken: list[float] = []
         self.fresh = 0
         self.router = Router(standard_registry(), BridgeLimits(), 500 * MS, self.count)
-        self.router.on_new_commander = self.begin
+        self.router.desk.on_new_commander = self.begin
         self.router.add_command("/cmd", "std_msgs/Float64", self.accept)
         self.router.add_command("/ask", "std_msgs/Float64", self.accept, leased=False)
 

@@ -92,7 +92,7 @@ def test_it_comes_back_with_everything_and_nobody_engaged(
                 await until(lambda: server.console.inputs.command.sequence == number + 1)  # noqa: B023  (ends here)
                 double.peers[-1].transport.abort()
                 await until(lambda: server.console.router.upstream == "lost")
-            assert server.console.router.lease.holder(0) is None
+            assert server.console.router.desk.lease.holder(0) is None
             await until(lambda: server.console.router.upstream == "connected")
             server.publish(snapshot(5))
             await until(lambda: bool(double.heard("publish", "/odom")))

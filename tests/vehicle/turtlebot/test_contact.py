@@ -11,7 +11,7 @@ def pushed(
     x_m: float, y_m: float, segments: list[tuple[float, ...]], circles: list[tuple[float, ...]]
 ) -> tuple[float, ...]:
     row = np.concatenate((np.zeros(OBSTACLES_AT), np.ravel(segments), np.ravel(circles)))
-    return pushed_out(x_m, y_m, RADIUS_M, row, len(segments), len(circles))
+    return pushed_out(x_m, y_m, RADIUS_M, row, len(segments), len(circles), row, 0)
 
 
 FLOOR, SIDE = (0.0, 0.0, 2.0, 0.0), (0.0, 0.0, 0.0, 2.0)

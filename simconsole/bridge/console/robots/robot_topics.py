@@ -21,7 +21,7 @@ from simconsole.values.draws import Channel, normal
 from simconsole.values.kernels import Row
 from simconsole.values.layout import read
 from simconsole.values.units import NS_PER_S, STANDARD_GRAVITY_MPS2
-from simconsole.vehicle.turtlebot.robot_state import ROBOT, RobotState
+from simconsole.vehicle.turtlebot.robot_state import ROBOT, RobotState, others_of
 from simconsole.world.arena.arena_world import ArenaWorld
 from simconsole.world.arena.laser_scan import Execution, LaserScanner
 from simconsole.world.arena.lidar import TWO_PI
@@ -86,7 +86,11 @@ class RobotTopics:
 
     def _scan(self, tick: PublishedTick) -> Any:
         lidar = self._profile.lidar
-        scan = None if self._scanner is None else self._scanner.scan(state_of(tick.snapshot.vector))
+        scan = (
+            None
+            if self._scanner is None
+            else self._scanner.scan(state_of(tick.snapshot.vector), others_of(tick.snapshot.vector))
+        )
         ranges = [] if scan is None else scan.ranges_m.tolist()
         stamp_ns = tick.snapshot.t_ns - (0 if scan is None else scan.age_ns)
         step_rad = TWO_PI / lidar.samples

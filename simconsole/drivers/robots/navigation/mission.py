@@ -1,7 +1,7 @@
 """What a robot does on its own: it makes the whole map known, then goes to its targets in the cheapest order."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple
 
 from simconsole.drivers.robots.allocation.exact import optimum
@@ -46,8 +46,14 @@ class Mission:
         is_done: whether all targets have been gone to.
     """
 
-    def __init__(self, navigator: Navigator, targets: Sequence[Target], explores: bool = True) -> None:
-        """Send `navigator` round."""
+    def __init__(
+        self,
+        navigator: Navigator,
+        targets: Sequence[Target],
+        explores: bool = True,
+        taken: Callable[[], Sequence[Place]] = tuple,
+    ) -> None:
+        """Send `navigator` round; `taken` returns the frontiers that other robots are on their way to."""
         self.visits: list[Visit] = []
         self.planned_m = 0.0
         self.explored_s: float | None = None
@@ -55,6 +61,7 @@ class Mission:
         self._navigator = navigator
         self._targets = list(targets)
         self._explores = explores
+        self._taken = taken
         self._order: list[Target] | None = None
         self._frontier: Place | None = None
         self._given_up: list[Place] = []
@@ -89,12 +96,17 @@ class Mission:
             self._navigator.aim(None)
             self.is_done = True
 
+    @property
+    def frontier(self) -> Place | None:
+        """The frontier that the robot is on its way to; None: it explores no more, or not yet."""
+        return self._frontier if self._order is None else None
+
     def _explored(self, surface: Surface, pose: Pose) -> bool:
         """Send the robot to the next place of exploration; False where none is left."""
         start, navigator = (pose.x_m, pose.y_m), self._navigator
         if navigator.progress in (Progress.REACHED, Progress.FAILED) and self._frontier is not None:
             self._given_up.append(self._frontier)
-        chosen = next_view(navigator.planner, surface, start, self._given_up)
+        chosen = next_view(navigator.planner, surface, start, [*self._given_up, *self._taken()])
         if chosen is None:
             return False
         self._frontier = chosen

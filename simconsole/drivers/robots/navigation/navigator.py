@@ -123,6 +123,11 @@ class Navigator:
         turned = points_m @ np.array(((cosine, sine), (-sine, cosine)))
         return self.planner.surface(self._grid, turned + np.array((pose.x_m, pose.y_m)))
 
+    def hold(self) -> Speeds:
+        """Return that the robot stands for now: for another one that goes first, which is not to be stuck."""
+        self._way = None
+        return STOP
+
     def steer(self, time_s: float, pose: Pose, points_m: Array) -> Speeds:
         """Return the speeds to drive now.
 

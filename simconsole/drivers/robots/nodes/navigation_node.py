@@ -6,7 +6,7 @@ action /navigate_to_pose, and publishes /cmd_vel and /plan.
 
 import time
 from collections.abc import Callable
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple, Protocol
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from simconsole.drivers.robots.navigation.navigator import Navigator
 from simconsole.drivers.robots.navigation.path_following import STOP, Speeds
 from simconsole.drivers.robots.nodes.goals import ACTION, ACTION_TYPE, GOAL, Goals
 from simconsole.drivers.robots.nodes.localisation import Localisation
+from simconsole.drivers.robots.nodes.ros_client import RosClient
 from simconsole.drivers.robots.nodes.ros_messages import (
     FrameTree,
     LaserScan,
@@ -68,17 +69,25 @@ class Topics(NamedTuple):
     action: str
 
 
+class RobotTask(Protocol):
+    """What gives a robot its goals, as `Mission` does."""
+
+    def step(self, time_s: float, pose: Pose, points_m: Array) -> None:
+        """Give the navigator its next goal where it needs one."""
+
+
 class NavigationNode:
     """Drives one robot."""
 
     def __init__(
         self,
-        client: BridgeClient,
+        client: RosClient,
         navigator: Navigator,
-        mission: Mission | None = None,
+        mission: RobotTask | None = None,
         *,
         namespace: str = "",
         lockstep: bool = False,
+        yields: Callable[[float, Pose], bool] = lambda time_s, pose: False,
     ) -> None:
         """Register with `client`, which is not connected yet.
 
@@ -88,8 +97,10 @@ class NavigationNode:
             mission: gives it goals, in place of those from outside.
             namespace: of its topics and frames, `/tb3_0`; tf's topics and the frame of the map have none.
             lockstep: the console waits for each answer, and this program waits for SLAM.
+            yields: whether the robot, at this time and place, stands for another one.
         """
         self.commands = 0
+        self._yields = yields
         self._mission = mission
         self._client = client
         self._navigator = navigator
@@ -194,7 +205,7 @@ class NavigationNode:
         time_s = time_ns / NS_PER_S
         if self._mission is not None:
             self._mission.step(time_s, pose, points_m)
-        speeds = self._navigator.steer(time_s, pose, points_m)
+        speeds = self._navigator.hold() if self._yields(time_s, pose) else self._navigator.steer(time_s, pose, points_m)
         self._goals.report(time_s, pose)
         return speeds
 

@@ -10,6 +10,7 @@ from typing import Any, Final, NamedTuple
 
 from simconsole.bridge.client.bridge_client import BridgeClient
 from simconsole.bridge.protocol.backoff import DEAD_AFTER_S
+from simconsole.drivers.robots.nodes.ros_client import RosClient
 from simconsole.drivers.robots.nodes.ros_messages import (
     Frames,
     FrameTree,
@@ -63,7 +64,7 @@ class SlamNode:
         moments: its trajectory.
     """
 
-    def __init__(self, client: BridgeClient, shared: SharedMap, start: Pose, namespace: str = "") -> None:
+    def __init__(self, client: RosClient, shared: SharedMap, start: Pose, namespace: str = "") -> None:
         """Register with `client`, which is not connected yet.
 
         Args:

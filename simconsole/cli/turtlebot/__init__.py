@@ -1,0 +1,1 @@
+"""`simconsole turtlebot`: the use case of three robots, in one command."""

@@ -1,0 +1,98 @@
+"""SLAM, navigation and task allocation of several robots as one program on the ROS side, over one WebSocket."""
+
+import math
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from simconsole.bridge.client.bridge_client import BridgeClient
+from simconsole.drivers.robots.fleet.team import Team
+from simconsole.drivers.robots.nodes.navigation_node import NavigationNode
+from simconsole.drivers.robots.nodes.shared_client import NodePort, SharedClient
+from simconsole.drivers.robots.nodes.slam_node import WAIT_S, Moment, SlamNode
+from simconsole.drivers.robots.slam.mapper import SharedMap
+from simconsole.values.errors import BridgeError
+from simconsole.values.host.jit import compiled
+from simconsole.values.platform import Pose
+from simconsole.world.arena.occupancy import Grid
+
+
+class Robot(NamedTuple):
+    """One robot of the program."""
+
+    namespace: str  # of its topics and frames, `/tb3_0`
+    start: Pose  # in map
+
+
+class FleetDriven(NamedTuple):
+    """What the program has made of a drive."""
+
+    grid: Grid | None  # None: there was no scan
+    moments: list[list[Moment]]  # where SLAM had each robot
+    commands: int
+    ended: str  # why
+
+
+def run(
+    url: str,
+    robots: Sequence[Robot],
+    team: Team,
+    *,
+    stop: Callable[[], bool] = lambda: False,
+    patience_s: float = 10.0,
+    told: Callable[[Team], None] = lambda team: None,
+) -> FleetDriven:
+    """Drive in lockstep until the team is done, the server ends the session, or `stop()` is true.
+
+    Args:
+        url: the rosbridge server, `ws://HOST:PORT`.
+        robots: in the order of the team's members.
+        team: what they do.
+        stop: called after every message and four times a second.
+        patience_s: how long to try to connect.
+        told: called likewise, with the team.
+
+    Raises:
+        BridgeError: no server answers at `url`.
+    """
+    shared_map = SharedMap(compiled)
+    with BridgeClient(url, until_good_bye=True, dead_after_s=math.inf) as client:
+        shared = SharedClient(client)
+        slams = [_slam(shared.port(), shared_map, robot) for robot in robots]
+        drivers = [_driver(shared.port(), robot, number, team) for number, robot in enumerate(robots)]
+        shared_map.warm_up()
+        for member in team.members:
+            member.navigator.warm_up()
+        client.connect(patience_s)
+        ended = "stopped"
+        try:
+            while not stop() and not team.is_done:
+                shared.pump(WAIT_S)
+                for port, node in drivers:
+                    while port.waiting:
+                        node.take(*port.waiting.popleft())
+                told(team)
+            if team.is_done:
+                ended = "mission done"
+        except BridgeError as error:
+            ended = str(error)
+    commands = sum(node.commands for _, node in drivers)
+    return FleetDriven(shared_map.grid, [node.moments for node in slams], commands, ended)
+
+
+def _slam(port: NodePort, shared_map: SharedMap, robot: Robot) -> SlamNode:
+    node = SlamNode(port, shared_map, robot.start, robot.namespace)
+    port.at_once = node.take
+    return node
+
+
+def _driver(port: NodePort, robot: Robot, number: int, team: Team) -> tuple[NodePort, NavigationNode]:
+    member = team.members[number]
+    node = NavigationNode(
+        port,
+        member.navigator,
+        member,
+        namespace=robot.namespace,
+        lockstep=True,
+        yields=lambda time_s, pose: team.yields(number, time_s, pose),
+    )
+    return port, node
