@@ -20,7 +20,6 @@ from simconsole.processes.lifetimes import ATTACHED, end, spawn
 from simconsole.profiles.vehicle import OdometryErrors, TurtlebotProfile
 from simconsole.recording.bundles.manifest import read_manifest
 from simconsole.recording.bundles.pack import pack
-from simconsole.recording.bundles.provenance import NOTHING_GIVEN
 from simconsole.session.fleet.fleet_drive import drive_fleet
 from simconsole.session.fleet.members import members
 from simconsole.session.lifecycle import DriveResult
@@ -130,7 +129,6 @@ def _driven(resolved: ResolvedSession, folder: Path, objective: str, progress: P
         driven = drive_fleet(
             resolved,
             folder / BUNDLE,
-            NOTHING_GIVEN,
             until_left=True,
             on_bridge=start,
         )
