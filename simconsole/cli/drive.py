@@ -13,6 +13,7 @@ from simconsole.cli.progress import Progress
 from simconsole.profiles.person import ROUTE_DRIVER
 from simconsole.profiles.session import SessionProfile
 from simconsole.recording.bundles.provenance import Given
+from simconsole.session.fleet.fleet_drive import drive_fleet
 from simconsole.session.lifecycle import drive as drive_session
 from simconsole.session.resolution import headless, load_session, override, resolve
 from simconsole.session.seat import look_for_devices
@@ -31,7 +32,8 @@ def drive(options: Namespace) -> Outcome:
         resolved = _with_a_cockpit(resolved, choose=options.choose, asks=asks)
     folder = Path(options.out) if options.out else Path("out") / time.strftime("drive-%Y%m%d-%H%M%S")
     with Progress("driving", route_length_m(resolved.world)) as progress:
-        result = drive_session(resolved, folder, show=progress.show, given=given)
+        drives = drive_fleet if resolved.fleet else drive_session
+        result = drives(resolved, folder, show=progress.show, given=given)
     outputs = resolved.session.outputs
     return finish(result, report=outputs.report, scene=outputs.scene is not None, packed=not options.no_pack)
 

@@ -29,15 +29,30 @@ COMPARISON: Final = ("first", "second")
 
 
 def replay(options: Namespace) -> Outcome:
-    """Re-simulate a bundle from its recorded inputs; code 1 with a table of the fields that differ."""
-    from simconsole.recording.bundles.replay_bundle import replay_bundle
+    """Re-simulate a bundle from its recorded inputs; code 1 with a table of the fields that differ.
 
+    Of a session with several platforms each is replayed alone.
+    """
     if options.set:
         return _counterfactual(options)
     if options.out is not None:
         raise RecordingError("command line: --out: only with --set, which makes another drive")
-    result = replay_bundle(Path(options.bundle), read_tolerances(options.tolerances))
-    covered = coverage(Path(options.bundle))
+    folder = Path(options.bundle)
+    first = _replayed(folder, options.tolerances)
+    others = {name: _replayed(folder / name, options.tolerances) for name in read_manifest(folder).platforms}
+    if not others:
+        return first
+    code = max(outcome.code for outcome in (first, *others.values()))
+    results = {**first.results, "platforms": {name: outcome.results for name, outcome in others.items()}}
+    return Outcome(code, results, "\n".join((first.text, *(outcome.text for outcome in others.values()))))
+
+
+def _replayed(folder: Path, tolerances: str | None) -> Outcome:
+    """Re-simulate what one platform's bundle holds."""
+    from simconsole.recording.bundles.replay_bundle import replay_bundle
+
+    result = replay_bundle(folder, read_tolerances(tolerances))
+    covered = coverage(folder)
     results = {
         **result._asdict(),
         "digest": result.digest.hex(),
@@ -45,16 +60,16 @@ def replay(options: Namespace) -> Outcome:
         "vouches_for": covered.replayed if result.good and result.hashes_equal else [],
     }
     if result.differences:
-        verdict = f"{options.bundle}: {result.ticks} ticks replayed, {len(result.differences)} fields differ"
+        verdict = f"{folder}: {result.ticks} ticks replayed, {len(result.differences)} fields differ"
     elif result.problems:
-        verdict = f"{options.bundle}: {result.ticks} ticks replayed, equal, but they are not the whole drive"
+        verdict = f"{folder}: {result.ticks} ticks replayed, equal, but they are not the whole drive"
     elif result.hashes_equal:
-        verdict = f"{options.bundle}: {result.ticks} ticks replayed, every hash equal"
+        verdict = f"{folder}: {result.ticks} ticks replayed, every hash equal"
         says = f"this vouches for {', '.join(covered.replayed)}; for {', '.join(covered.others)}: simconsole verify"
         verdict = f"{verdict}\n{says}"
     else:
-        verdict = f"{options.bundle}: {result.ticks} ticks replayed, no field of both differs" + (
-            " by more than its tolerance" if options.tolerances else ""
+        verdict = f"{folder}: {result.ticks} ticks replayed, no field of both differs" + (
+            " by more than its tolerance" if tolerances else ""
         )
     lines = [verdict, *([differences_text(result.differences, REPLAY)] if result.differences else [])]
     lines += columns_text(result.new, "new, not in the recording")

@@ -39,7 +39,7 @@ from simconsole.session.seat import look_for_devices
 from simconsole.tick.advance import SETTINGS, Console, ConsoleState, advance
 from simconsole.tick.assembly import ResolvedSession, assemble
 from simconsole.tick.loop import come_to_rest, run
-from simconsole.values.errors import RecordingError
+from simconsole.values.errors import ProfileError, RecordingError
 from simconsole.values.host.jit import compiled
 from simconsole.values.layout import read
 from simconsole.values.own_signals import OwnSignals
@@ -85,16 +85,11 @@ def drive(
     torque goes off, the bundle is finished, then everything is closed. A second signal ends the process at once; before
     the first tick nothing is left.
 
-    Several platforms, where the session names them, are driven by `drive_fleet`; nobody watches these, and they have
-    no code of a lab's own.
-
     Raises:
         SimConsoleError: a device, port or file cannot be opened; what was opened before is closed again.
     """
-    if resolved.session.scenario.platforms:
-        from simconsole.session.fleet.fleet_drive import drive_fleet
-
-        return drive_fleet(resolved, folder, given, show, on_bridge=on_bridge)
+    if resolved.fleet:
+        raise ProfileError("scenario.platforms: value given: several are driven by simconsole drive and turtlebot only")
     sweep()
     check_session(resolved.session, has_controller=own.controller is not None)
     check_world(resolved)

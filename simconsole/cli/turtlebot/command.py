@@ -19,8 +19,6 @@ from simconsole.evaluation.robots.mission_result import MissionResult, mission_r
 from simconsole.processes.lifetimes import ATTACHED, end, spawn
 from simconsole.profiles.vehicle import OdometryErrors, TurtlebotProfile
 from simconsole.recording.bundles.manifest import read_manifest
-from simconsole.recording.bundles.pack import pack
-from simconsole.recording.bundles.provenance import NOTHING_GIVEN
 from simconsole.session.fleet.fleet_drive import drive_fleet
 from simconsole.session.fleet.members import members
 from simconsole.session.lifecycle import DriveResult
@@ -54,9 +52,6 @@ def turtlebot(options: Namespace) -> Outcome:
     (folder / TABLE).write_text(result.text(), "utf-8")
     (folder / FIGURE).write_text(mission_svg(result, arena), "utf-8")
     outcome = finish(driven, packed=not options.no_pack)
-    if not options.no_pack and driven.recording_failure is None:
-        for name in read_manifest(driven.folder).platforms:
-            pack(driven.folder / name)
     cpu_s = sum(os.times()[:4]) - began_s
     digests = {resolved.session.scenario.platforms[0].name: driven.digest, **read_manifest(driven.folder).platforms}
     plain = {
@@ -130,7 +125,6 @@ def _driven(resolved: ResolvedSession, folder: Path, objective: str, progress: P
         driven = drive_fleet(
             resolved,
             folder / BUNDLE,
-            NOTHING_GIVEN,
             until_left=True,
             on_bridge=start,
         )

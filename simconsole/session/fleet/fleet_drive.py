@@ -12,7 +12,7 @@ from simconsole.processes.shared_memory import sweep
 from simconsole.profiles.vehicle import TurtlebotProfile
 from simconsole.recording.bundles.bundle import BundleWriter
 from simconsole.recording.bundles.manifest import Manifest
-from simconsole.recording.bundles.provenance import Given
+from simconsole.recording.bundles.provenance import NOTHING_GIVEN, Given
 from simconsole.session.fleet.fleet_bridge import links
 from simconsole.session.fleet.members import members
 from simconsole.session.lifecycle import ENDLESS_TICKS, DriveResult, bundle_of, warm_up
@@ -41,7 +41,7 @@ class _Member(NamedTuple):
 def drive_fleet(
     resolved: ResolvedSession,
     folder: Path,
-    given: Given,
+    given: Given = NOTHING_GIVEN,
     show: Callable[[Snapshot], None] = lambda snapshot: None,
     until_left: bool = False,
     on_bridge: Callable[[str], None] = lambda url: None,

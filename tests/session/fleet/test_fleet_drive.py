@@ -1,5 +1,6 @@
 """Three robots in one session over one rosbridge server: they see, touch and outlive each other; each replays alone."""
 
+import shutil
 import threading
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.manifest import read_manifest
 from simconsole.recording.bundles.replay_bundle import replay_bundle
 from simconsole.recording.bundles.verification import verify
-from simconsole.session.lifecycle import drive
+from simconsole.session.fleet.fleet_drive import drive_fleet
 from simconsole.session.resolution import resolve
 from simconsole.values.signals import Mode
 from tests.drives.controllers import free_port
@@ -49,7 +50,7 @@ class Driven:
         self.client = FleetClient(f"ws://127.0.0.1:{port}", speeds)
         thread = threading.Thread(target=self.client.run)
         thread.start()
-        self.result = drive(resolve(session_of(port)), self.bundle)
+        self.result = drive_fleet(resolve(session_of(port)), self.bundle)
         thread.join()
         self.folders = [self.bundle, self.bundle / "tb3_1", self.bundle / "tb3_2"]
         self.tables = [open_bundle(own).log.table() for own in self.folders]
@@ -123,8 +124,6 @@ def test_each_chain_replays_alone(driven: Driven) -> None:
 
 
 def test_the_bundle_vouches_for_the_other_platforms(driven: Driven, tmp_path: Path) -> None:
-    import shutil
-
     copy = tmp_path / "copy"
     shutil.copytree(driven.bundle, copy)
     shutil.rmtree(copy / "tb3_2")
