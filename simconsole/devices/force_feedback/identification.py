@@ -22,6 +22,8 @@ Array = NDArray[np.float64]
 STROKES: Final = 8
 STROKE_RAD: Final = 4.0 * RAD_PER_DEG
 """Way of a stroke until it is braked; the delay adds to it."""
+RAISED: Final = 1.4
+"""A stroke that was too weak is tried again with so many times its torque."""
 STROKE_RADPS: Final = 45.0 * RAD_PER_DEG
 PULSE_S: Final = 0.12
 HELD_TICKS: Final = 2
@@ -92,15 +94,23 @@ def identify(
         move(tape.turn, rules, 0.0, 1.0)
     rough = fitted(tape)
     say(f"first look: delay {1000.0 * rough.delay_s:.0f} ms, {rough.accel_per_nm:.0f} rad/s2 per N m")
-    for stroke in range(STROKES):
-        _stroke(tape, rough, rules, 1.0 if stroke % 2 == 0 else -1.0)
+    strokes, raised = 0, 1.0
+    while strokes < STROKES:
+        if _stroke(tape, rough, rules, 1.0 if strokes % 2 == 0 else -1.0, raised):
+            strokes += 1
+        else:
+            raised *= RAISED
     return fitted(tape)
 
 
-def _stroke(tape: Tape, rough: Identified, rules: Gentle, direction: float) -> None:
-    """Push the wheel to one side, let it roll, brake it, and bring it back."""
+def _stroke(tape: Tape, rough: Identified, rules: Gentle, direction: float, raised: float) -> bool:
+    """Push the wheel to one side, let it roll, brake it, and bring it back.
+
+    Returns whether it has gone far enough to say something, or cannot be pushed harder. A first look at a wheel that
+    hardly turns may take its motor for a much stronger one; `raised` times the torque then do.
+    """
     radps2 = min(STROKE_RADPS / PULSE_S, rules.limit_nm * rough.accel_per_nm - rough.friction_radps2)
-    torque_nm = min(rules.limit_nm, (radps2 + rough.friction_radps2) / rough.accel_per_nm)
+    torque_nm = min(rules.limit_nm, raised * (radps2 + rough.friction_radps2) / rough.accel_per_nm)
     start_rad = rad = tape.turn(0.0)
     longest_s = min(3.0 * PULSE_S, STROKE_RADPS / max(radps2, 0.5))
     ticks = 0
@@ -110,6 +120,7 @@ def _stroke(tape: Tape, rough: Identified, rules: Gentle, direction: float) -> N
     while ticks < 4 * longest_s * tape.tick_hz and abs(rad - start_rad) < STROKE_RAD:
         rad = tape.turn(0.0)
         ticks += 1
+    told = abs(rad - start_rad) >= 0.5 * STROKE_RAD or torque_nm >= rules.limit_nm
     brake_nm = min(rules.limit_nm, torque_nm)
     radps = 1.0
     for _ in range(round(0.5 * tape.tick_hz)):
@@ -119,6 +130,7 @@ def _stroke(tape: Tape, rough: Identified, rules: Gentle, direction: float) -> N
             break
     tape.turn(0.0)
     move(tape.turn, rules, 0.0, 1.0)
+    return told
 
 
 def fitted(tape: Tape) -> Identified:

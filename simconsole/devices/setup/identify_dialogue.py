@@ -139,15 +139,19 @@ def _weigh(
 def identified_profile(
     cockpit: CockpitProfile, force: ForceFeedback, found: Identified, scale: float, weight: Weight | None
 ) -> CockpitProfile:
-    """Return the profile with what was found, and where each figure comes from."""
+    """Return the profile with what was found, and where each figure comes from.
+
+    Raises:
+        DeviceError: a figure is beyond what a profile may hold, so none of them is to be believed.
+    """
     inertia = scale / found.accel_per_nm
     how: Literal["ratios", "weight"] = "ratios" if weight is None else "weight"
     motor = msgspec.structs.replace(
         force.motor,
-        inertia_kgm2=_within(inertia, 0.005, 0.5),
-        damping_nms=_within(found.damping_per_s * inertia, 0.0, 2.0),
-        friction_nm=_within(found.friction_radps2 * inertia, 0.0, 2.0),
-        delay_s=_within(found.delay_s, 0.0, 0.05),
+        inertia_kgm2=_within("inertia, kg m2", inertia, 0.005, 0.5),
+        damping_nms=_within("damping, N m s", found.damping_per_s * inertia, 0.0, 2.0),
+        friction_nm=_within("friction, N m", found.friction_radps2 * inertia, 0.0, 2.0),
+        delay_s=_within("delay, s", found.delay_s, 0.0, 0.05),
         identified=how,
     )
     date = time.strftime("%Y-%m-%d")
@@ -162,7 +166,7 @@ def identified_profile(
     if weight is not None:
         sources["force_feedback.max_torque_nm"] = Provenance(status="captured", source=source + _scale_words(weight))
     kept = {key: value for key, value in cockpit.provenance.items() if not key.startswith("force_feedback.motor")}
-    most_nm = round(_within(force.max_torque_nm * scale, 0.5, 30.0), 4)
+    most_nm = round(_within("most torque, N m", force.max_torque_nm * scale, 0.5, 30.0), 4)
     return msgspec.structs.replace(
         cockpit,
         force_feedback=msgspec.structs.replace(force, motor=motor, max_torque_nm=most_nm),
@@ -176,8 +180,10 @@ def _scale_words(weight: Weight | None) -> str:
     return f"a weight of {weight.mass_kg:g} kg at {weight.radius_m:g} m"
 
 
-def _within(value: float, low: float, high: float) -> float:
-    return round(min(high, max(low, value)), 6)
+def _within(what: str, value: float, low: float, high: float) -> float:
+    if not low <= value <= high:
+        raise DeviceError(f"wheel: {what}: value {value:.3g}: {low:g} to {high:g}; turn it freely and identify again")
+    return round(value, 6)
 
 
 def borne_by_wheel(cockpit: CockpitProfile, tick_hz: int) -> str:

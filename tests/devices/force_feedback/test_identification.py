@@ -17,6 +17,9 @@ from tests.samples import Sample
 SLOW = Draw(inertia=2.0, torque=0.5, friction_nm=0.3, delay_ms=32)
 """A first look at it is short: a motor that pulls back and friction that pushes would explain it, too."""
 
+FAINT = Draw(inertia=1.5902783830943377, torque=0.6996495270812205, friction_nm=0.18045975923259294, delay_ms=15)
+"""A first look at it is a third of a degree, which takes the motor for one of three times its strength."""
+
 
 @pytest.fixture
 def force(t500: CockpitProfile) -> ForceFeedback:
@@ -29,7 +32,7 @@ def test_figures_are_found_and_the_wheel_stays_slow(
 ) -> None:
     worst = np.zeros(5)
     drawn = draws(np.random.default_rng(sample.seed), sample.of(3, 50))
-    for draw in (SLOW, *ENDS[:: sample.of(7, 1)], *drawn):
+    for draw in (SLOW, FAINT, *ENDS[:: sample.of(7, 1)], *drawn):
         wheel = BenchedWheel(force, draw)
         found = identify(wheel.turn, force, 0.4, TICK_HZ)
         motor = true_force(force, draw).motor

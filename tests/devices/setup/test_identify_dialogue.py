@@ -5,8 +5,9 @@ from pathlib import Path
 import msgspec
 import pytest
 
+from simconsole.devices.force_feedback.identification import Identified
 from simconsole.devices.setup.device_commands import unpaced
-from simconsole.devices.setup.identify_dialogue import Weight, borne_by_wheel, identify_motor
+from simconsole.devices.setup.identify_dialogue import Weight, borne_by_wheel, identified_profile, identify_motor
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load
 from simconsole.values.errors import DeviceError
@@ -44,6 +45,14 @@ def test_weight_gives_the_scale_and_the_report_says_so(t500: CockpitProfile) -> 
     found = identify_motor(t500, None, say=quiet, ask=enter, virtual=True, pace=unpaced, weight=Weight(1.0, 0.14))
     assert found["max_torque_nm"] == pytest.approx(4.0, rel=0.02)
     assert found["scale"] == "a weight of 1 kg at 0.14 m"
+
+
+def test_figure_that_no_wheel_has_is_refused_and_not_cut_to_the_next_that_one_has(t500: CockpitProfile) -> None:
+    force = t500.force_feedback
+    assert force is not None
+    strange = Identified(0.02, 30.0, 0.0, 125.0, 0.0001)
+    with pytest.raises(DeviceError, match=r"wheel: damping, N m s: value 4\.17: 0 to 2; turn it freely"):
+        identified_profile(t500, force, strange, 1.0, None)
 
 
 def test_share_of_a_hatchbacks_torque_falls_where_the_motor_is_late(t500: CockpitProfile) -> None:
