@@ -56,7 +56,7 @@ def test_each_platform_has_its_own_commander(
 ) -> None:
     bridge, (first, second) = ports
     heard: list[list[str]] = [[], []]
-    with beside(answering(bridge.url, "/a", 2, heard[0])), beside(answering(bridge.url, "/b", 3, heard[1])):
+    with beside(answering(bridge.url, "/a", 2, heard[0])), beside(answering(bridge.url, "/b", 4, heard[1])):
         assert bridge.wait_for_client(PATIENCE_S, [first.console, second.console])
         assert (first.clients, second.clients) == (1, 1)
         for tick in (5, 10):
@@ -71,9 +71,10 @@ def test_each_platform_has_its_own_commander(
         other, more = second.take(16)
         assert not (int(others_events.events) | int(more.events)) & Event.COMMANDER_LOST
         assert other.sequence == 3.0
+        assert second.exchange(snapshot(20), PATIENCE_S, lambda: False), "so it is still there"
     for topics in heard:
         assert topics.count("/tf_static") == 2, "one of each platform"
-        assert topics.count("/clock") <= 3, "one tells the time for both"
+        assert topics.count("/clock") <= 4, "one tells the time for both"
 
 
 def test_who_comes_later_gets_what_both_have_latched(
