@@ -125,7 +125,10 @@ class ConsoleBridge:
     def _topic(self, output: ScheduledOutput) -> Topic:
         """Return the server's topic of an output: platforms have /tf and /tf_static together."""
         known = self.router.topic(output.name) if output.standard in GLOBAL_TOPICS else None
-        return known or self.router.add_output(output.name, output.type, latch=output.latched, shared=output.shared)
+        if known is None:
+            return self.router.add_output(output.name, output.type, latch=output.latched, shared=output.shared)
+        known.depth += 1  # each platform's newest message is kept for a slow client
+        return known
 
     def publish(self, snapshot: Snapshot, now_ns: int, *, odometry: bool = False) -> int | None:
         """Queue every message of `snapshot` that is due and wanted; with `odometry`, that in any case.

@@ -1,4 +1,4 @@
-from simconsole.bridge.protocol.lease import Lease
+from simconsole.bridge.protocol.lease import CommandDesk, Lease
 
 
 def test_first_valid_command_starts_the_lease() -> None:
@@ -31,3 +31,14 @@ def test_release_after_the_end_is_no_loss() -> None:
     lease = Lease(500)
     lease.renew(1, 100)
     assert not lease.release(1, 700)
+
+
+def test_a_desk_begins_with_nobody_and_tells_whom_it_was_given() -> None:
+    told: list[str] = []
+    desk = CommandDesk(500, lambda: told.append("refused"))
+    assert desk.lease.holder(0) is None
+    assert desk.lease.length_ns == 500
+    desk.on_refused()
+    desk.on_new_commander()
+    desk.on_lost()
+    assert told == ["refused"]

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from simconsole.vehicle.turtlebot.contact import pushed_out
-from simconsole.vehicle.turtlebot.robot_state import OBSTACLES_AT
+from simconsole.vehicle.turtlebot.robot_state import OBSTACLES_AT, OTHERS_AT
 
 RADIUS_M = 0.1
 
@@ -37,3 +37,12 @@ def test_out_of_a_corner_it_touches_both_walls() -> None:
 
 def test_a_pillar_pushes_outwards() -> None:
     assert pushed(1.3, 1.0, [], [(1.0, 1.0, 0.25)]) == pytest.approx((1.35, 1.0, 0.05, 0.0))
+
+
+def test_another_robot_pushes_as_a_pillar_does() -> None:
+    others = [(1.0, 1.0, 0.25), (3.0, 1.0, 0.25)]
+    row = np.concatenate((np.zeros(OTHERS_AT), np.ravel(others)))
+    nothing = np.zeros(OBSTACLES_AT)
+    assert pushed_out(1.3, 1.0, RADIUS_M, nothing, 0, 0, row, 2) == pytest.approx((1.35, 1.0, 0.05, 0.0))
+    assert pushed_out(2.7, 1.0, RADIUS_M, nothing, 0, 0, row, 2) == pytest.approx((2.65, 1.0, -0.05, 0.0))
+    assert pushed_out(2.0, 1.0, RADIUS_M, nothing, 0, 0, row, 2) == (2.0, 1.0, 0.0, 0.0)

@@ -1,0 +1,86 @@
+"""The use case of three robots by one command: all tasks are done, nobody touches anything, everything replays."""
+
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from simconsole.recording.bundles.replay_bundle import replay_bundle
+from simconsole.recording.bundles.verification import verify
+from tests.drives.console import complaint, results, simconsole
+from tests.samples import Sample
+
+CPU_S = 150.0
+
+
+class Run:
+    """One run of the command, and what it took of the processor."""
+
+    def __init__(self, folder: Path, seed: int, objective: str) -> None:
+        before = os.times()
+        self.folder = folder / f"{objective}-{seed}"
+        done = simconsole("turtlebot", "--out", self.folder, "--seed", seed, "--objective", objective, "--json")
+        after = os.times()
+        assert done.returncode == 0, done.stdout + done.stderr
+        self.cpu_s = after.children_user + after.children_system - before.children_user - before.children_system
+        self.said = results(done)
+        self.text = done.stdout
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory: pytest.TempPathFactory, module_sample: Sample) -> list[Run]:
+    folder = tmp_path_factory.mktemp("turtlebot")
+    count = module_sample.of(1, 20)
+    return [
+        Run(folder, (module_sample.seed + number) % 100_000, ("makespan", "sum")[number % 2]) for number in range(count)
+    ]
+
+
+def test_all_tasks_are_done_and_nobody_touches_anything(runs: list[Run]) -> None:
+    for run in runs:
+        assert run.said["good"]
+        robots: list[dict[str, Any]] = run.said["robots"]
+        assert [robot["collisions"] for robot in robots] == [0, 0, 0]
+        assert sorted(target for robot in robots for target in robot["tour"]) == ["A", "B", "C", "D", "E"]
+        assert run.said["driven_m"] == pytest.approx(run.said["planned_m"], rel=0.1)
+
+
+def test_slam_keeps_its_bounds_with_the_other_robots_moving(runs: list[Run]) -> None:
+    for run in runs:
+        for robot in run.said["robots"]:
+            assert robot["slam_rms_m"] <= 0.05
+            assert robot["odometry_rms_m"] > robot["slam_rms_m"]
+        assert run.said["map"]["precision"] >= 0.85
+        assert run.said["map"]["recall"] >= 0.85
+
+
+def test_it_takes_no_more_of_the_processor_than_it_may(runs: list[Run]) -> None:
+    for run in runs:
+        print(f"{run.cpu_s:.1f} s of CPU time")
+        assert run.cpu_s <= CPU_S
+
+
+def test_everything_is_written_and_replays(runs: list[Run]) -> None:
+    run = runs[0]
+    names = {path.name for path in run.folder.iterdir()}
+    assert names == {"bundle", "map.yaml", "map.pgm", "mission.json", "mission.svg", "results.json", "table.txt"}
+    assert "12.76 m" in (run.folder / "table.txt").read_text(), "as the paper's, beside ours"
+    assert json.loads((run.folder / "results.json").read_text())["digests"] == run.said["digests"]
+    bundle = run.folder / "bundle"
+    assert {"report.html", "scene.rrd", "tb3_1", "tb3_2"} <= {path.name for path in bundle.iterdir()}
+    assert verify(bundle) == []
+    for folder in (bundle, bundle / "tb3_1", bundle / "tb3_2"):
+        assert replay_bundle(folder).hashes_equal
+
+
+def test_one_seed_gives_one_drive(runs: list[Run], tmp_path: Path) -> None:
+    first = runs[0]
+    objective, _, seed = first.folder.name.partition("-")
+    again = Run(tmp_path, int(seed), objective)
+    assert again.said["digests"] == first.said["digests"]
+
+
+def test_a_session_without_platforms_is_refused() -> None:
+    assert "scenario.platforms" in complaint(simconsole("turtlebot", "--session", "turtlebot3_burger"))
