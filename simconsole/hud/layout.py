@@ -7,6 +7,7 @@ dial and steering side by side, then a strip of lamps. Each thing has one place 
 import math
 from typing import Final, NamedTuple
 
+from simconsole.hud.advice import BAND, ONE_SPEED, PREPARE, WIDEST
 from simconsole.hud.banner import ONE_SCREEN, Alert, alert_of, banner, slot
 from simconsole.hud.dial import dial
 from simconsole.hud.draw import BACKGROUND, Box, DrawItem, Rect, Text, bounds
@@ -233,6 +234,7 @@ def sample_views(settings: HudSettings | None = None) -> list[HudView]:
         views += [told._replace(todo_label=label) for label in (*steps, *presses)]
     views += [wide._replace(other_side=side, driver_hand_wheel_deg=-900.0) for side in (AUTOPILOT, CONSOLE, NOBODY)]
     views += [wide._replace(notice_label=wide.say(notice_label(notice))) for notice in Notice]
+    views += [wide._replace(notice_label=wide.say(phrase, **WIDEST)) for phrase in (BAND, ONE_SPEED, PREPARE)]
     asked = wide._replace(mode=float(Mode.TAKEOVER_REQUESTED), mode_label=wide.say(mode_label(Mode.TAKEOVER_REQUESTED)))
     views += [asked._replace(takeover_stage=stage, remaining_s=10.0) for stage in (1, 2)]
     validities = (0.0, 1.0, 2.0, 3.0, 4.0)

@@ -5,6 +5,7 @@ import string
 from functools import cache
 from typing import Final
 
+from simconsole.hud.advice import BAND, ONE_SPEED, PREPARE
 from simconsole.hud.banner import ALERT_LABELS, DISTANCE, MODE_UNKNOWN, TIME
 from simconsole.hud.dial import AUTO, KMH, NO_DATA, THOUSAND_RPM, UP
 from simconsole.hud.frame_times import DATA_AGE, DRAWING, FRAME, NO_DATA_YET, RATE
@@ -74,6 +75,7 @@ _OF_PARTS: Final = (
     *(RUNNING, OFF, ON, DOWN, LET_GO, TWO_GEARS, NOT_NOW, PAUSED),
     *(LINK_COMMANDER, LINK_CONNECTING, LINK_DOWN, LINK_LOST, LINK_NOBODY, LINK_RETRYING),
     *(NOW, METRES, KILOMETRES),
+    *(BAND, ONE_SPEED, PREPARE),
     *(YOU, AUTOPILOT, CONSOLE, NOBODY),
     *(STEER_OR_BRAKE, WAIT, PRESS_TO_DRIVE, PRESS_TO_RESET, ASK),
 )

@@ -2,6 +2,7 @@
 
 from typing import Final, NamedTuple
 
+from simconsole.hud.advice import advice_label
 from simconsole.hud.guidance import Ahead, Guidance, ahead
 from simconsole.hud.key_names import help_rows, key_label
 from simconsole.hud.language import number, say
@@ -17,6 +18,7 @@ from simconsole.values.signals import FAR, NEVER_TICKS, Event, GateLimit, Mode
 from simconsole.values.state_vector import LAYOUT, Snapshot
 from simconsole.values.units import DEG_PER_RAD, KMH_PER_MPS, RPM_PER_RADPS
 from simconsole.values.validity import is_trusted
+from simconsole.world.rules.speed_advice import NO_ADVICE, Advice
 
 STALE_S: Final = 0.5
 """Older snapshots are not shown: NO DATA."""
@@ -198,6 +200,7 @@ def view(
     settings: HudSettings,
     can_up: bool | None = None,
     link: str | None = None,
+    advice: Advice = NO_ADVICE,
 ) -> tuple[HudView, HudMemory]:
     """Return the content of one picture.
 
@@ -208,6 +211,7 @@ def view(
         settings: the dial's and the rules' numbers.
         can_up: whether the CAN bus is up; None without one.
         link: how the rosbridge link stands; None without a bridge.
+        advice: for the next traffic light.
     """
     vehicle, command, driver, language = snapshot.vehicle, snapshot.command, snapshot.driver, settings.language
     arbitration = snapshot.arbitration
@@ -234,7 +238,8 @@ def view(
             snapshot, language, settings.standstill_mps, settings.manual_button, settings.reset_button
         ),
         refusal_label=say(language, reason_label(arbitration.refusal)) if arbitration.refusal else "",
-        notice_label=say(language, notice_label(arbitration.notice or snapshot.broken_rule)),
+        notice_label=say(language, notice_label(arbitration.notice or snapshot.broken_rule))
+        or advice_label(advice, language),
         recording_failed=snapshot.recording_failed,
         takeover_stage=int(arbitration.takeover_stage),
         remaining_s=_remaining_s(snapshot, settings),

@@ -33,6 +33,8 @@ SIGNALS: Final = "signals"
 """The stream of the signals that another simulator runs, JSON: those that have changed."""
 PLANS: Final = "plans"
 """The stream of what the autopilot plans."""
+ADVICE: Final = "advice"
+"""The stream of the speed advice that the driver was given, JSON: each when it is another."""
 _HEAD: Final = Struct("<II")
 
 

@@ -4,6 +4,7 @@ import os
 import secrets
 import subprocess
 
+from simconsole.bridge.transport.addresses import reached_here
 from simconsole.processes.lifetimes import ATTACHED, DRIVE_VARIABLE, spawn
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.link import late_ms
@@ -22,8 +23,9 @@ def new_nonce() -> str:
 
 
 def own_token(session: SessionProfile) -> str | None:
-    """Return the token with which the session's own autopilot connects to its bridge; None where none is needed."""
-    if session.outputs.bridge is None or session.features.autopilot is None:
+    """Return the token with which the session's own programs connect to its bridge; None where none is needed."""
+    features = session.features
+    if session.outputs.bridge is None or not (features.autopilot is not None or features.speed_advice):
         return None
     from simconsole.bridge.transport.credentials import control_token
 
@@ -58,7 +60,7 @@ def start_autopilot(
         "autopilot",
         ATTACHED,
         "--url",
-        _here(url),
+        reached_here(url),
         "--course",
         session.features.autopilot or "",
         "--tracker",
@@ -87,8 +89,3 @@ def start_autopilot(
         return spawn(arguments, environment={**os.environ, **shown})
     except OSError as error:
         raise BridgeError(f"the autopilot cannot be started: {error.strerror}") from None
-
-
-def _here(url: str) -> str:
-    """Return the address for this machine of a server that listens on all addresses: no certificate names those."""
-    return url.replace("//0.0.0.0:", "//127.0.0.1:").replace("//[::]:", "//[::1]:")

@@ -22,6 +22,7 @@ from simconsole.recording.bundles.provenance import NOTHING_GIVEN, Given
 from simconsole.recording.bundles.replay_bundle import sources_sha256
 from simconsole.recording.log_header import (
     ACTS,
+    ADVICE,
     PLANS,
     ROAD_USERS,
     SIGNALS,
@@ -31,6 +32,7 @@ from simconsole.recording.log_header import (
     vector_stream,
 )
 from simconsole.recording.own_signals import stream_of
+from simconsole.session.advice.advice_worker import gives_advice
 from simconsole.session.opening import Opened, open_headless, open_realtime
 from simconsole.session.paced import keeps_plans
 from simconsole.session.preconditions import check_session, check_world
@@ -184,6 +186,8 @@ def bundle_of(
     if traffic is not None and traffic.sumo is not None:
         road_users = (*road_users, message_stream(SIGNALS, "json"))
     plans = (message_stream(PLANS, PLANS_ENCODING),) if keeps_plans(resolved.session) else ()
+    if gives_advice(resolved.session):
+        plans = (*plans, message_stream(ADVICE))
     own = () if signals is None else (stream_of(signals),)
     return new_bundle(resolved, console, folder, given, (message_stream(ACTS), *road_users, *plans, *own))
 

@@ -18,6 +18,7 @@ from simconsole.processes.supervisor import SupervisorHandle
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.session import SessionProfile
 from simconsole.recording.bundles.log import LogWriter
+from simconsole.session.advice.advice_worker import share_advice
 from simconsole.session.autopilot_program import PROGRAM_END_S, new_nonce, own_token, start_autopilot
 from simconsole.session.lockstep import STAND_S, LockstepLink, LockstepServer
 from simconsole.session.paced import (
@@ -188,16 +189,14 @@ def open_realtime(
     memory = make_memory(folder, console)
     traffic, unpushable = _open_traffic(resolved, console, stack, folder), CollisionEnd(console.platform)
     plans = share_plans(resolved.session, folder)
-    recorder = LogRecorder(log, memory.acts.take, traffic, plans)
+    recorder = LogRecorder(log, memory.acts.take, traffic, plans, share_advice(resolved.session, folder))
     if traffic is not None:
         share_road_users(traffic, folder, runs_signals(resolved))
     ecu = add_can_memory(resolved, console, folder)
     supervisor = SupervisorHandle(folder, worker_specs(resolved, console, folder, bundle, drive))
     programs = _started(supervisor, memory, stack)
     opening.close()  # from here on the supervisor removes the folder, however the core ends
-    if traffic is not None:
-        traffic.await_worker(lambda: _lives(supervisor, interrupt.check))
-    address = _await_workers(resolved, folder, programs, (drive, token), supervisor, interrupt.check)
+    address = _await_workers(resolved, folder, programs, (drive, token), supervisor, interrupt.check, traffic)
     with_window = resolved.session.outputs.hud is not None
     seating = open_seating(resolved, console, stack, memory.keys if with_window else None)
     missing = stack.enter_context(realtime_hints())
@@ -282,16 +281,20 @@ def _await_workers(
     credentials: tuple[str, str | None],
     supervisor: SupervisorHandle,
     check: Callable[[], None],
+    traffic: TrafficSource | None,
 ) -> str | None:
-    """Wait until bridge and CAN bus are open and return the bridge's address.
+    """Wait until traffic, bridge and CAN bus are there and return the bridge's address.
 
     Adds the session's own autopilot to `programs`, with the drive's nonce and the token of `credentials`.
     """
     session = resolved.session
 
     def alive() -> bool:
-        return _lives(supervisor, check)
+        check()
+        return supervisor.alive()
 
+    if traffic is not None:
+        traffic.await_worker(alive)
     address, bridge = None, session.outputs.bridge
     if bridge is not None:
         address = bridge_address(folder, lambda: alive() and not supervisor.counters().get("bridge"))
@@ -300,11 +303,6 @@ def _await_workers(
     if session.outputs.can is not None:
         wait_for_can(folder, lambda: alive() and not supervisor.counters().get("canbus"))
     return address
-
-
-def _lives(supervisor: SupervisorHandle, check: Callable[[], None]) -> bool:
-    check()
-    return supervisor.alive()
 
 
 def _idle(snapshot: Snapshot) -> None:

@@ -16,6 +16,8 @@ from simconsole.profiles.session import SessionProfile
 from simconsole.profiles.vehicle import TurtlebotProfile
 from simconsole.profiles.world import RoadsProfile
 from simconsole.recording.log_header import PLANS
+from simconsole.session.advice.advice_worker import AdviceWorker, gives_advice
+from simconsole.session.autopilot_program import own_token
 from simconsole.session.camera_worker import CameraWorker
 from simconsole.session.external_view import display_settings
 from simconsole.session.sumo.sumo_memory import signal_bytes, signals_within
@@ -261,7 +263,7 @@ def worker_specs(
 
     `drive` is the nonce of the drive.
     """
-    outputs, tick_hz = resolved.session.outputs, console.tick_hz
+    outputs, tick_hz, bridge = resolved.session.outputs, console.tick_hz, resolved.session.outputs.bridge
     has_bridge, has_can = outputs.bridge is not None, outputs.can is not None
     traffic = resolved.session.environment.traffic
     has_traffic = traffic is not None
@@ -286,6 +288,17 @@ def worker_specs(
             world=resolved.world,
             vehicle=resolved.vehicle if isinstance(resolved.vehicle, TurtlebotProfile) else None,
         )
+    if bridge is not None and gives_advice(resolved.session) and resolved.world is not None:
+        workers["advice"] = AdviceWorker(
+            world=resolved.world,
+            vehicle=resolved.vehicle,
+            drive=drive,
+            address=ADDRESS,
+            token=own_token(resolved.session),
+            certificate=bridge.certificate,
+            namespace=bridge.namespace,
+            rename=bridge.rename,
+        )
     if outputs.can is not None:
         from simconsole.canbus.messages import wheel_columns
 
@@ -293,7 +306,6 @@ def worker_specs(
             profile=outputs.can, tick_hz=tick_hz, wheels=wheel_columns(console.columns), bundle=str(bundle.absolute())
         )
     has_view = outputs.hud is not None and outputs.hud.view is not None
-    bridge = outputs.bridge
     if has_view or (bridge is not None and (bridge.external_view or bridge.camera is not None)):
         save_view_job(folder / VIEW_JOB, view_job(resolved))
     if bridge is not None and bridge.camera is not None:
@@ -308,6 +320,7 @@ def worker_specs(
             has_can=has_can,
             has_bridge=has_bridge,
             has_traffic=has_traffic,
+            has_advice=gives_advice(resolved.session),
         )
     if outputs.hud is not None and outputs.sound is not None:
         from simconsole.session.sound_worker import SoundWorker, sound_settings

@@ -47,6 +47,8 @@ def check_session(session: SessionProfile, *, has_controller: bool = False) -> N
 
 def _check_commander(session: SessionProfile) -> None:
     features = session.features
+    if features.speed_advice and session.outputs.bridge is None:
+        raise ProfileError("features.speed_advice: value true: needs outputs.bridge, whose topics it goes by")
     if features.commands is not None and (session.mode.pacing != "free" or features.autopilot is not None):
         raise ProfileError(f"features.commands: value {features.commands}: mode.pacing free, and no autopilot")
     if features.commander != "can":

@@ -23,12 +23,14 @@ from simconsole.profiles.can import CanProfile
 from simconsole.profiles.vehicle import TurtlebotProfile
 from simconsole.profiles.view import HudProfile
 from simconsole.profiles.world import WorldProfile
+from simconsole.session.advice.advice_worker import NewestAdvice
 from simconsole.values.host.files import write_atomically
 from simconsole.values.kernels import Row
 from simconsole.values.labels import LINK_DOWN
 from simconsole.values.planned_path import PlannedPath, to_bytes
 from simconsole.values.signals import RemoteCommand
 from simconsole.values.state_vector import LAYOUT, Snapshot
+from simconsole.values.units import tick_time_ns
 from simconsole.world.roads.running import NONE_RUNNING, RunningNow, changed
 from simconsole.world.traffic.road_users import NOBODY_AT_ALL, RoadUsersAt, from_record
 
@@ -189,6 +191,7 @@ class HudWorker(Worker, frozen=True, kw_only=True):
     has_can: bool
     has_bridge: bool
     has_traffic: bool = False
+    has_advice: bool = False
 
     def run(self, folder: Path, stop: Callable[[], bool]) -> None:
         """Draw until `stop`."""
@@ -224,6 +227,9 @@ class HudWorker(Worker, frozen=True, kw_only=True):
         can = CanWatch(folder / CAN_STATUS, time.time, time.monotonic) if self.has_can else lambda: None
         link = LinkWatch(folder / LINK_STATUS, time.time, time.monotonic) if self.has_bridge else lambda: None
         ports = Ports(latest, report_keys, stop, can_up=can, drawn=receipts.drawn, link=link, motion=motion)
+        if self.has_advice:
+            newest, tick_hz = NewestAdvice(folder), self.tick_hz
+            ports = ports._replace(advice=lambda: newest(tick_time_ns(_tick_of(ring), tick_hz)))
         scene = _view_scene(folder) if self.profile.view is not None else None
         memory = HabitsFile(state_folder() / STATE_FILE)
         run(ports, self.profile, self.settings, partial(open_window, scene=scene), memory)
@@ -269,6 +275,12 @@ class RoadUsersRing:
 
     def _of(self, record: Record) -> RoadUsersAt:
         return RoadUsersAt(record.stamp, from_record(record.values), self.signals())
+
+
+def _tick_of(ring: Ring) -> int:
+    """Return the newest tick, 0 before the first."""
+    record = ring.latest()
+    return 0 if record is None else record.stamp
 
 
 def _view_scene(folder: Path) -> "ViewScene":

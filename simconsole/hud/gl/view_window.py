@@ -23,6 +23,7 @@ from simconsole.hud.window.pygame_window import Window, dress_window, placed
 from simconsole.profiles.view import DriverViewProfile, HudProfile
 from simconsole.values.errors import WorkerError
 from simconsole.values.state_vector import Snapshot
+from simconsole.world.rules.speed_advice import NO_ADVICE, Advice
 
 if TYPE_CHECKING:
     import moderngl
@@ -80,11 +81,12 @@ class ViewWindow:
         link: str | None = None,
         motion: Motion | None = None,
         aids: Aids = NO_AIDS,
+        advice: Advice = NO_ADVICE,
     ) -> None:
         """Draw one frame: the vehicle between the two newest ticks, everything else of the newest one."""
         import pygame
 
-        content = self._memory.content(snapshot, now_s, can_up, link)
+        content = self._memory.content(snapshot, now_s, can_up, link, advice)
         if motion is not None:
             self._shown = moved(motion.older, motion.newer, motion.age_s)
             if motion.road_users is not None:

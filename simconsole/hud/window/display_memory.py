@@ -2,6 +2,7 @@
 
 from simconsole.hud.view import HudMemory, HudSettings, HudView, view
 from simconsole.values.state_vector import Snapshot
+from simconsole.world.rules.speed_advice import NO_ADVICE, Advice
 
 
 class Freshness:
@@ -26,10 +27,17 @@ class DisplayMemory:
         self._memory = HudMemory()
         self._freshness = Freshness()
 
-    def content(self, snapshot: Snapshot | None, now_s: float, can_up: bool | None, link: str | None) -> HudView:
+    def content(
+        self,
+        snapshot: Snapshot | None,
+        now_s: float,
+        can_up: bool | None,
+        link: str | None,
+        advice: Advice = NO_ADVICE,
+    ) -> HudView:
         """Return what to show at `now_s` of a steady clock; `can_up`, `link`: None without CAN bus or bridge."""
         if snapshot is None:
             return HudView(stale=True)
         age_s = self._freshness.age_s(snapshot.tick, now_s)
-        shown, self._memory = view(snapshot, age_s, self._memory, self._settings, can_up, link)
+        shown, self._memory = view(snapshot, age_s, self._memory, self._settings, can_up, link, advice)
         return shown

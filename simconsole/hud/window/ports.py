@@ -5,6 +5,7 @@ from typing import NamedTuple, Protocol
 
 from simconsole.hud.aids import NO_AIDS, Aids
 from simconsole.values.state_vector import Snapshot
+from simconsole.world.rules.speed_advice import NO_ADVICE, Advice
 from simconsole.world.traffic.road_users import RoadUsersAt
 
 
@@ -27,6 +28,7 @@ class Ports(NamedTuple):
     can_up: Callable[[], bool | None] = lambda: None  # whether the CAN bus is up; None where there is none
     drawn: Callable[[], None] = lambda: None  # told after every frame
     link: Callable[[], str | None] = lambda: None  # how the rosbridge link stands; None where there is no bridge
+    advice: Callable[[], Advice] = lambda: NO_ADVICE  # for the next traffic light
     motion: Callable[[], Motion | None] = lambda: None  # for a picture that moves between two ticks
 
 
@@ -44,6 +46,7 @@ class DriverWindow(Protocol):
         link: str | None = None,
         motion: Motion | None = None,
         aids: Aids = NO_AIDS,
+        advice: Advice = NO_ADVICE,
     ) -> None:
         """Draw one frame. `can_up`, `link`: None without CAN bus or bridge."""
 

@@ -16,6 +16,7 @@ from simconsole.hud.window.raster import Painter
 from simconsole.profiles.view import HudProfile
 from simconsole.values.errors import WorkerError
 from simconsole.values.state_vector import Snapshot
+from simconsole.world.rules.speed_advice import NO_ADVICE, Advice
 
 if TYPE_CHECKING:
     pass
@@ -67,11 +68,12 @@ class Window:
         link: str | None = None,
         motion: Motion | None = None,
         aids: Aids = NO_AIDS,
+        advice: Advice = NO_ADVICE,
     ) -> None:
         """Draw one frame; one equal to the last costs nothing."""
         import pygame
 
-        items = layout(self._memory.content(snapshot, now_s, can_up, link), self._screen)
+        items = layout(self._memory.content(snapshot, now_s, can_up, link, advice), self._screen)
         for panel in aid_panels(aids, self._screen):
             items += panel.items
         if items == self._drawn:

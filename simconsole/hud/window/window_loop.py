@@ -89,7 +89,7 @@ class _Loop:
             self._settings.help_rows if self._help else (), self._times.lines(age_s) if self._shows_times else ()
         )
         before_s = time.monotonic()
-        self.window.frame(snapshot, before_s, ports.can_up(), ports.link(), ports.motion(), aids)
+        self.window.frame(snapshot, before_s, ports.can_up(), ports.link(), ports.motion(), aids, ports.advice())
         after_s = time.monotonic()
         self._times.add(after_s - self._drawn_s, after_s - before_s)
         self._drawn_s = after_s

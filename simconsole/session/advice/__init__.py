@@ -1,0 +1,1 @@
+"""Speed advice for a person: a worker that hears what any client of the bridge hears."""

@@ -1,0 +1,151 @@
+"""The worker that advises the driver: a client of the drive's own bridge, which knows what topics tell and no more."""
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Final
+
+import msgspec
+
+from simconsole.processes.byte_slot import ByteSlot, Piece
+from simconsole.processes.worker import Worker
+from simconsole.profiles.session import SessionProfile
+from simconsole.profiles.vehicle import VehicleProfile
+from simconsole.profiles.world import WorldProfile
+from simconsole.recording.log_header import ADVICE
+from simconsole.values.errors import BridgeError, OtherDriveError
+from simconsole.values.units import NS_PER_S
+from simconsole.world.rules.speed_advice import NO_ADVICE, Advice, Advised
+
+ADVICE_BYTES: Final = 256
+OLD_S: Final = 1.0
+"""Advice that was not renewed for so long is not shown: who gives it has fallen silent."""
+_RATE_HZ: Final = 10.0
+_WAIT_S: Final = 0.1
+_PATIENCE_S: Final = 5.0
+
+
+class AdviceWorker(Worker, frozen=True, kw_only=True):
+    """Hears odometry and traffic lights, and writes how fast to drive."""
+
+    world: WorldProfile
+    vehicle: VehicleProfile
+    drive: str
+    """The drive's nonce."""
+    address: str
+    """The file of the run folder with the bridge's address."""
+    token: str | None = None
+    certificate: str | None = None
+    namespace: str = ""
+    rename: dict[str, str] = msgspec.field(default_factory=dict)
+
+    def run(self, folder: Path, stop: Callable[[], bool]) -> None:
+        """Advise until `stop`."""
+        slot = ByteSlot.open(folder / ADVICE, writable=True)
+        while not (folder / self.address).exists():
+            if stop():
+                return
+            time.sleep(_WAIT_S)
+        url = (folder / self.address).read_text("utf-8")
+        while not stop():
+            try:
+                self._advise(url, slot, stop)
+            except OtherDriveError:
+                raise
+            except BridgeError:
+                time.sleep(_WAIT_S)  # its bridge is started again
+
+    def _advise(self, url: str, slot: ByteSlot, stop: Callable[[], bool]) -> None:
+        from simconsole.bridge.client.bridge_client import BridgeClient
+        from simconsole.bridge.transport.addresses import reached_here
+        from simconsole.drivers.autopilot.lights import SIGNALS, SIGNALS_TYPE, lights_of
+        from simconsole.drivers.autopilot.motion import Odometry, motion_of
+        from simconsole.drivers.autopilot.program import ODOMETRY
+        from simconsole.drivers.autopilot.route_advice import RouteAdvice
+        from simconsole.world.kinds.worlds import open_world
+
+        advice = RouteAdvice(open_world(self.world), self.vehicle)
+        odometry, signals = (self.rename.get(topic, self.namespace + topic) for topic in (ODOMETRY, SIGNALS))
+        with BridgeClient(
+            reached_here(url), token=self.token, certificate=self.certificate, drive=self.drive, until_good_bye=True
+        ) as client:
+            client.subscribe(odometry, "nav_msgs/Odometry", reads=Odometry, throttle_rate=round(1000.0 / _RATE_HZ))
+            client.subscribe(signals, SIGNALS_TYPE)
+            client.connect(_PATIENCE_S)
+            while not stop():
+                received = client.receive(_WAIT_S)
+                if received is None:
+                    continue
+                topic, message = received
+                if topic == signals:
+                    advice.see(lights_of(message))
+                elif (seen := motion_of(message)) is not None:
+                    stamp = message.header.stamp
+                    told = advice.advise(seen, stamp.sec + stamp.nanosec / NS_PER_S)
+                    slot.write(stamp.sec * NS_PER_S + stamp.nanosec, to_bytes(told))
+
+
+def to_bytes(advice: Advice) -> bytes:
+    """Return an advice as JSON."""
+    return msgspec.json.encode(advice._asdict())
+
+
+def from_bytes(content: bytes) -> Advice:
+    """Return an advice from JSON.
+
+    Raises:
+        ValueError: it is none.
+    """
+    try:
+        told = msgspec.json.decode(content, type=dict[str, float])
+        return Advice(Advised(int(told.pop("kind"))), **told)
+    except (msgspec.MsgspecError, KeyError, TypeError) as problem:
+        raise ValueError(f"advice: {problem}") from None
+
+
+class NewestAdvice:
+    """What the display shows: the newest advice, nothing where it is old."""
+
+    def __init__(self, folder: Path) -> None:
+        self._slot = ByteSlot.open(folder / ADVICE)
+        self._piece: Piece | None = None
+        self._advice = NO_ADVICE
+
+    def __call__(self, now_ns: int) -> Advice:
+        """Return what holds at a time of the drive."""
+        piece = self._slot.newest()
+        if piece is None or now_ns - piece.number > OLD_S * NS_PER_S:
+            return NO_ADVICE
+        if piece is not self._piece:
+            self._piece, self._advice = piece, from_bytes(piece.content)
+        return self._advice
+
+
+class AdviceSource:
+    """What was advised, for the log: each advice when it is another."""
+
+    def __init__(self, slot: ByteSlot) -> None:
+        self._slot = slot
+        self._told = to_bytes(NO_ADVICE)
+
+    def take_messages(self) -> list[tuple[str, bytes]]:
+        """Return the newest advice, if it is not the one before."""
+        piece = self._slot.newest()
+        if piece is None or piece.content == self._told:
+            return []
+        self._told = piece.content
+        return [(ADVICE, piece.content)]
+
+
+def gives_advice(session: SessionProfile) -> bool:
+    """Return whether a drive advises its driver how to come to lights at green."""
+    return session.mode.pacing == "realtime" and session.features.speed_advice
+
+
+def share_advice(session: SessionProfile, folder: Path) -> AdviceSource | None:
+    """Make the memory through which advice comes; None where none is given.
+
+    Raises:
+        WorkerError: it cannot be made.
+    """
+    return AdviceSource(ByteSlot.create(folder / ADVICE, ADVICE_BYTES)) if gives_advice(session) else None

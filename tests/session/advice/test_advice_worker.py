@@ -1,0 +1,98 @@
+"""Advice from a real drive's topics: what its worker hears, shows and leaves in the log."""
+
+from itertools import pairwise
+from pathlib import Path
+
+import msgspec
+import pytest
+
+from simconsole.processes.byte_slot import ByteSlot
+from simconsole.processes.worker import WorkerSpec, load_worker
+from simconsole.profiles.files.vehicle_files import load_vehicle
+from simconsole.profiles.files.world_files import load_world
+from simconsole.recording.bundles.bundle import open_bundle
+from simconsole.recording.bundles.replay_bundle import replay_bundle
+from simconsole.recording.log_header import ADVICE
+from simconsole.session.advice.advice_worker import (
+    ADVICE_BYTES,
+    OLD_S,
+    AdviceSource,
+    AdviceWorker,
+    NewestAdvice,
+    from_bytes,
+    to_bytes,
+)
+from simconsole.session.lifecycle import drive
+from simconsole.session.preconditions import check_session
+from simconsole.session.resolution import load_session, resolve
+from simconsole.values.errors import ProfileError
+from simconsole.world.rules.speed_advice import NO_ADVICE, STOP, Advice, Advised
+
+BAND = Advice(Advised.SPEED, 8.0, 11.0, 10.5)
+SESSION = """\
+schema: 1
+environment: {world: urban_signals}
+scenario: {vehicle: hatchback, duration_s: 40, start: {x_m: 150}}
+features: {speed_advice: true}
+outputs: {hud: null, scene: null, report: false, bridge: BRIDGE}
+devices:
+  driver: virtual
+  person: {title: drives, sit_s: 0.3, cruise_kmh: 40, along: route, seed: 1}
+mode: {pacing: realtime, tick_hz: 250}
+"""
+
+
+def session(folder: Path, bridge: str = "{port: 0}") -> Path:
+    path = folder / "session.yaml"
+    path.write_text(SESSION.replace("BRIDGE", bridge))
+    return path
+
+
+def test_a_person_is_advised_by_topics_and_the_log_keeps_it(tmp_path: Path) -> None:
+    result = drive(resolve(load_session(str(session(tmp_path)))), tmp_path / "bundle")
+    bundle = open_bundle(result.folder)
+    told = [(message.tick, from_bytes(message.content)) for message in bundle.log.messages(ADVICE)]
+    assert any(advice.kind is not Advised.NOTHING for _, advice in told)
+    assert all(before != after for (_, before), (_, after) in pairwise(told))
+    limit_mps = bundle.log.table().column("situation.speed_limit_mps").max()
+    assert all(5.0 <= one.low_mps <= one.target_mps <= limit_mps for _, one in told if one.kind is Advised.SPEED)
+    assert result.summary["station_restarts"] == {"bridge": 0, "advice": 0}
+    assert replay_bundle(result.folder).hashes_equal
+
+
+def test_advice_without_topics_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ProfileError, match=r"features\.speed_advice: value true: needs outputs\.bridge"):
+        check_session(load_session(str(session(tmp_path, "null"))))
+
+
+def test_advice_is_shown_until_it_is_old_and_logged_when_it_is_another(tmp_path: Path) -> None:
+    slot = ByteSlot.create(tmp_path / ADVICE, ADVICE_BYTES)
+    newest, source = NewestAdvice(tmp_path), AdviceSource(ByteSlot.open(tmp_path / ADVICE))
+    assert newest(0) == NO_ADVICE
+    assert source.take_messages() == []
+    slot.write(1_000_000_000, to_bytes(NO_ADVICE))
+    assert source.take_messages() == []
+    slot.write(2_000_000_000, to_bytes(BAND))
+    assert newest(2_500_000_000) == BAND
+    assert newest(2_000_000_001 + round(OLD_S * 1e9)) == NO_ADVICE
+    assert source.take_messages() == [(ADVICE, to_bytes(BAND))]
+    slot.write(2_100_000_000, to_bytes(BAND))
+    assert source.take_messages() == []
+    slot.write(2_200_000_000, to_bytes(STOP))
+    assert source.take_messages() == [(ADVICE, to_bytes(STOP))]
+
+
+def test_what_is_no_advice_is_refused() -> None:
+    assert from_bytes(to_bytes(BAND)) == BAND
+    for content in (b"[]", b"{}", b'{"kind": 7}', b'{"kind": 1, "fast": 2}'):
+        with pytest.raises(ValueError, match=r"advice|not a valid"):
+            from_bytes(content)
+
+
+@pytest.mark.parametrize("vehicle", ["hatchback", "ball", "turtlebot3_burger"])
+def test_its_configuration_travels_as_json(vehicle: str) -> None:
+    worker = AdviceWorker(
+        world=load_world("urban_signals"), vehicle=load_vehicle(vehicle), drive="a", address="b", rename={"/odom": "/o"}
+    )
+    assert load_worker(WorkerSpec.of("advice", worker)) == worker
+    assert msgspec.json.encode(worker)
