@@ -90,12 +90,13 @@ def open_headless(
     own: OwnCode = NO_OWN_CODE,
     scripted: Callable[[Components], Components] = lambda components: components,
     link: LockstepLink | None = None,
+    others: TrafficSource | None = None,
 ) -> Opened:
     """Open a drive that runs as fast as it can, all of it in this process. A raised `interrupt` ends all waiting.
 
     A controller of `own` drives in the place of whoever the session names, as in lockstep. `scripted` puts what a
-    scenario holds into the parts, before faults act on them. A platform of several brings its `link` to the server
-    that they share.
+    scenario holds into the parts, before faults act on them; `others` are its road users, in the place of traffic. A
+    platform of several brings its `link` to the server that they share.
 
     Raises:
         ProfileError: lockstep without a bridge.
@@ -111,7 +112,7 @@ def open_headless(
     counters: Callable[[], dict[str, Any]] = dict
     of_can: Callable[[], dict[str, Any]] = dict
     take_acts: Callable[[], list[bytes]] = list
-    traffic, unpushable = _open_traffic(resolved, console, stack), CollisionEnd(console.platform)
+    traffic, unpushable = others or _open_traffic(resolved, console, stack), CollisionEnd(console.platform)
     parts = OwnParts(own, resolved.session.mode.control_period_ticks)
     if parts.controller is not None:
         link = lockstep_link(parts.controller, resolved.session, interrupt)

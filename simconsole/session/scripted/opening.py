@@ -29,6 +29,8 @@ from simconsole.values.errors import ProfileError
 from simconsole.values.protocols import CommandSource, NobodyCommands, Output
 from simconsole.values.state_vector import Snapshot
 from simconsole.world.kinds.worlds import open_world
+from simconsole.world.roads.road_world import roads_of
+from simconsole.world.rules.owing import Owing
 
 _BY_HAND = ("sdl", "keyboard")
 """Drivers that a scenario has not: without a script nobody sits in the seat."""
@@ -53,7 +55,9 @@ def open_scenario(
     """
     script = _Script(scenario, resolved, console)
     folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="simconsole-")))
-    opened = open_headless(script.resolved, console, NoLog(), folder, Interrupt(), stack, scripted=script.into)
+    opened = open_headless(
+        script.resolved, console, NoLog(), folder, Interrupt(), stack, scripted=script.into, others=script.others
+    )
     # Who is asked for nothing is left out of the loop, and in a check, unlike in a drive, a failing recorder raises.
     components = opened.components._replace(recorder=recorder, latencies=None)
 
@@ -91,6 +95,10 @@ class _Script:
         self._scenario, self._console = scenario, console
         self._events: TriggeredEvents | None = None
         self._messages: ScriptedMessages | None = None
+        self._actors: ScriptedActors | None = None
+        self.others: TrafficSource | None = None
+        if scenario.actors:
+            self._actors, self.others = self._road_users()
 
     def into(self, parts: Components) -> Components:
         """Return the parts with the scenario's devices, commands, edges and road users."""
@@ -103,18 +111,13 @@ class _Script:
         if scenario.ecu or scenario.ecu_events:
             ecu = ScriptedCommands(scenario.ecu, scenario.ecu_events, tick_hz)
         commands, seen = self._commands(parts.commands)
-        road_users = parts.road_users
-        if scenario.actors:
-            actors, traffic = self._actors()
-            outputs, road_users = (*outputs, actors, traffic), traffic
-        outputs = (*outputs, *seen)
+        first: tuple[Output, ...] = () if self._actors is None else (self._actors,)  # acts begin before it is stepped
+        outputs = (*first, *outputs, *seen)
         standby = parts.standby
         if self._events is not None:
             live = self.resolved.session.mode.pacing == "lockstep"  # its sockets are served meanwhile
             standby = (*(standby if live else ()), self._events.stand)
-        return parts._replace(
-            devices=devices, commands=commands, ecu=ecu, outputs=outputs, road_users=road_users, standby=standby
-        )
+        return parts._replace(devices=devices, commands=commands, ecu=ecu, outputs=outputs, standby=standby)
 
     def stands(self, snapshot: Snapshot) -> bool:
         """Return whether simulated time stands for ever."""
@@ -142,9 +145,14 @@ class _Script:
         self._events = TriggeredEvents(scenario.events, others, tick_hz)
         return self._events, (*seen, self._events)
 
-    def _actors(self) -> tuple[ScriptedActors, TrafficSource]:
-        platform = self._console.platform
-        route = None if self.resolved.world is None else open_world(self.resolved.world).route
+    def _road_users(self) -> tuple[ScriptedActors, TrafficSource]:
+        platform, tick_hz = self._console.platform, self._console.tick_hz
+        world = None if self.resolved.world is None else open_world(self.resolved.world)
+        route = None if world is None else world.route
         ego = ego_box(platform.initial_vehicle, platform)
-        actors = ScriptedActors(self._scenario.actors, ego, route, self._console.tick_hz, self._scenario.title)
-        return actors, TrafficSource(actors, platform, actors.period_ticks, route)
+        actors = ScriptedActors(self._scenario.actors, ego, route, tick_hz, self._scenario.title)
+        roads = None if world is None else roads_of(world)
+        owing = None
+        if roads is not None and route is not None:
+            owing = Owing(roads.road_map, roads.legs, route, tick_hz)
+        return actors, TrafficSource(actors, platform, actors.period_ticks, route, owing)

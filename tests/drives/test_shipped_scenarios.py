@@ -1,0 +1,28 @@
+"""Every scenario that is shipped passes, and all of them together are driven within three minutes of processor time."""
+
+import resource
+
+from simconsole.evaluation.checks.selection import selected
+from tests.drives.console import results, simconsole
+from tests.paths import ROOT
+
+FOLDER = ROOT / "profiles" / "scenarios"
+CPU_S = 180.0
+
+
+def test_they_are_enough_and_of_every_kind() -> None:
+    names = selected([str(FOLDER)])
+    assert len(names) >= 60
+    for kind in ("by_hand", "hand_over", "faults", "handling", "roads", "traffic"):
+        assert sum(f"/{kind}/" in name for name in names) >= 5, kind
+
+
+def test_they_pass_within_three_minutes_of_processor_time() -> None:
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    found = results(simconsole("check", FOLDER, "--jobs", "2", "--json"))
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    failed = {one["scenario"]: one["problems"] for one in found["scenarios"] if not one["passed"]}
+    assert failed == {}
+    cpu_s = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    print(f"measured: {len(found['scenarios'])} scenarios in {cpu_s:.0f} s of processor time")
+    assert cpu_s < CPU_S
