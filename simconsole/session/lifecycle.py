@@ -33,7 +33,9 @@ from simconsole.recording.log_header import (
 )
 from simconsole.recording.own_signals import stream_of
 from simconsole.session.advice.advice_worker import gives_advice
-from simconsole.session.opening import Opened, open_headless, open_realtime
+from simconsole.session.opening.headless import open_headless
+from simconsole.session.opening.opened import Opened
+from simconsole.session.opening.realtime import open_realtime
 from simconsole.session.paced import keeps_plans
 from simconsole.session.preconditions import check_session, check_world
 from simconsole.session.provenance import package_versions, provenance_at_start, with_devices

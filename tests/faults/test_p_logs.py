@@ -32,17 +32,17 @@ KILLED = """
 import mmap, os, sys, time
 from pathlib import Path
 from simconsole.recording.bundles.provenance import Given
-from simconsole.session import opening
+from simconsole.session.opening import headless
 from simconsole.session.lifecycle import drive
 from tests.faults.recorded import session
 folder = Path(sys.argv[1])
 resolved = session(Path(sys.argv[2]), 3600.0)
 begun = memoryview(mmap.mmap(os.open(folder / "begun", os.O_RDWR), 8)).cast("q")
-recorder = opening.LogRecorder
+recorder = headless.LogRecorder
 def said():  # by an operator, in each third tick; the tick in work is the one after the last that began
     tick = begun[0] + 1
     return [b'{"tick":%d,"act":"mark","participant":"P07"}' % tick] if tick % 3 == 0 else []
-opening.LogRecorder = lambda log, take_acts, *sources: recorder(log, said, *sources)
+headless.LogRecorder = lambda log, take_acts, *sources: recorder(log, said, *sources)
 drive(resolved, folder / "warm", lambda snapshot: snapshot.tick >= 10)  # compiled and loaded, once for all
 def watch(snapshot):
     begun[0] = snapshot.tick  # shared memory: survives the kill, like nothing inside the process

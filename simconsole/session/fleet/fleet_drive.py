@@ -17,7 +17,8 @@ from simconsole.session.fleet.fleet_bridge import links
 from simconsole.session.fleet.members import members
 from simconsole.session.lifecycle import ENDLESS_TICKS, DriveResult, bundle_of, warm_up
 from simconsole.session.lockstep import LockstepLink
-from simconsole.session.opening import Opened, open_headless
+from simconsole.session.opening.headless import open_headless
+from simconsole.session.opening.opened import Opened
 from simconsole.session.preconditions import check_session, check_world
 from simconsole.tick.advance import Console, ConsoleState
 from simconsole.tick.assembly import ResolvedSession, assemble

@@ -1,0 +1,167 @@
+"""Opens a paced drive: every output in a process of its own."""
+
+import time
+from collections.abc import Callable
+from contextlib import ExitStack
+from pathlib import Path
+from subprocess import Popen
+from typing import Any
+
+from simconsole.faults.schedule import with_faults
+from simconsole.processes.lifetimes import Interrupt, end, tell_to_end, undone
+from simconsole.processes.receipts import latencies_of
+from simconsole.processes.shared_memory import make_run_folder, remove_run_folder
+from simconsole.processes.supervisor import SupervisorHandle
+from simconsole.recording.bundles.log import LogWriter
+from simconsole.session.advice.advice_worker import share_advice
+from simconsole.session.autopilot_program import PROGRAM_END_S, new_nonce, own_token, start_autopilot
+from simconsole.session.opening.opened import Opened, commands_over_link, outputs_of, summary_of, traffic_of
+from simconsole.session.paced import (
+    PLAN_HZ,
+    CommandPort,
+    Memory,
+    add_can_memory,
+    bridge_address,
+    bridge_summary,
+    can_summary,
+    make_memory,
+    runs_signals,
+    share_plans,
+    share_road_users,
+    wait_for_can,
+    worker_specs,
+)
+from simconsole.session.pacing import Pacer, realtime_hints
+from simconsole.session.preconditions import check_address
+from simconsole.session.recorder import LogRecorder
+from simconsole.session.seat import open_seating
+from simconsole.session.traffic_source import TrafficSource
+from simconsole.session.worker_programs import LATENCY
+from simconsole.tick.advance import Console
+from simconsole.tick.assembly import ResolvedSession
+from simconsole.tick.collision_end import CollisionEnd
+from simconsole.tick.isolation import isolated
+from simconsole.tick.loop import Components
+from simconsole.values.latency import LatencyStatistics
+
+
+def open_realtime(
+    resolved: ResolvedSession,
+    console: Console,
+    log: LogWriter,
+    bundle: Path,
+    interrupt: Interrupt,
+    stack: ExitStack,
+) -> Opened:
+    """Open a paced drive: every output in a process of its own, their inputs through shared memory.
+
+    A raised `interrupt` ends all waiting.
+
+    Raises:
+        WorkerError: shared memory or the workers cannot be created.
+        BridgeError: the bridge worker does not listen.
+        CanError: the CAN worker does not open its bus.
+        ProfileError: the bridge's own message types cannot be used.
+        DeviceError: a device is missing.
+    """
+    if resolved.session.outputs.bridge is not None:
+        check_address(resolved.session.outputs.bridge)
+    token, drive = own_token(resolved.session), new_nonce()
+    folder = make_run_folder()
+    stack.callback(remove_run_folder, folder)
+    opening = stack.enter_context(ExitStack())
+    opening.enter_context(undone(lambda: remove_run_folder(folder)))
+    memory = make_memory(folder, console)
+    traffic, unpushable = traffic_of(resolved, console, stack, folder), CollisionEnd(console.platform)
+    plans = share_plans(resolved.session, folder)
+    recorder = LogRecorder(log, memory.acts.take, traffic, plans, share_advice(resolved.session, folder))
+    if traffic is not None:
+        share_road_users(traffic, folder, runs_signals(resolved))
+    ecu = add_can_memory(resolved, console, folder)
+    supervisor = SupervisorHandle(folder, worker_specs(resolved, console, folder, bundle, drive))
+    programs = _started(supervisor, memory, stack)
+    opening.close()  # from here on the supervisor removes the folder, however the core ends
+    address = _await_workers(resolved, folder, programs, (drive, token), supervisor, interrupt.check, traffic)
+    with_window = resolved.session.outputs.hud is not None
+    seating = open_seating(resolved, console, stack, memory.keys if with_window else None)
+    missing = stack.enter_context(realtime_hints())
+    pace, latencies = Pacer(console.tick_hz), LatencyStatistics(time.monotonic_ns, console.tick_hz)
+    components = _paced_components(
+        resolved,
+        console,
+        Components(
+            devices=seating.devices,
+            commands=memory.commands,
+            recorder=recorder,
+            outputs=(*seating.outputs, *outputs_of(traffic), *unpushable.outputs, memory.snapshots, supervisor),
+            pace=pace,
+            seat=seating.seat,
+            ecu=ecu,
+            standby=(supervisor.publish, memory.commands.stand),
+            road_users=traffic,
+        ),
+    )._replace(latencies=latencies)
+
+    def summary() -> dict[str, Any]:
+        latency = {**latencies.summary_us(), **latencies_of(folder, LATENCY)}
+        workers = {"station_restarts": supervisor.counters(), **bridge_summary(folder), **can_summary(folder)}
+        own = {**recorder.acts_summary(), **summary_of(traffic), **unpushable.summary()}
+        own |= {"latency_us": latency, "not_granted": missing}
+        return {**pace.summary(), **workers, **own}
+
+    return Opened(
+        components=components,
+        finished=seating.finished,
+        summary=summary,
+        bridge_url=address,
+        identities=seating.identities,
+        left=lambda: memory.keys.ended() or unpushable.ended(),
+    )
+
+
+def _started(supervisor: SupervisorHandle, memory: Memory, stack: ExitStack) -> "list[Popen[bytes]]":
+    """Start the supervisor; return the list of programs that end with the drive, before the workers do."""
+    programs: list[Popen[bytes]] = []
+    stack.callback(end, programs, PROGRAM_END_S)
+    stack.callback(supervisor.stop, lambda: memory.snapshots.is_empty)
+    stack.callback(tell_to_end, programs)
+    supervisor.start()
+    return programs
+
+
+def _paced_components(resolved: ResolvedSession, console: Console, plain: Components) -> Components:
+    """Return the components with the session's link and faults around them, each isolated."""
+    standby = (*plain.standby, *((plain.ecu.stand,) if isinstance(plain.ecu, CommandPort) else ()))
+    linked = plain._replace(commands=commands_over_link(plain.commands, resolved, console), standby=standby)
+    return isolated(with_faults(linked, resolved, console.tick_hz), lambda: Pacer(console.tick_hz))
+
+
+def _await_workers(
+    resolved: ResolvedSession,
+    folder: Path,
+    programs: "list[Popen[bytes]]",
+    credentials: tuple[str, str | None],
+    supervisor: SupervisorHandle,
+    check: Callable[[], None],
+    traffic: TrafficSource | None,
+) -> str | None:
+    """Wait until traffic, bridge and CAN bus are there and return the bridge's address.
+
+    Adds the session's own autopilot to `programs`, with the drive's nonce and the token of `credentials`.
+    """
+    session = resolved.session
+
+    def alive() -> bool:
+        check()
+        return supervisor.alive()
+
+    if traffic is not None:
+        traffic.await_worker(alive)
+    address, bridge = None, session.outputs.bridge
+    if bridge is not None:
+        address = bridge_address(folder, lambda: alive() and not supervisor.counters().get("bridge"))
+        if session.features.autopilot is not None:
+            programs.append(start_autopilot(address, session, bridge, *credentials, plan_hz=PLAN_HZ))
+    if session.outputs.can is not None:
+        wait_for_can(folder, lambda: alive() and not supervisor.counters().get("canbus"))
+    return address
