@@ -1,13 +1,13 @@
 import errno
+import re
 import socket
-
-import refrom pathlib import Path
+from pathlib import Path
 
 import pytest
-from simconsole.cli.main import main
 import yaml
 
 from simconsole.bridge.transport import sockets
+from simconsole.cli.main import main
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.session import SessionProfile
 from simconsole.session.preconditions import check_address, check_session, check_world
