@@ -20,7 +20,7 @@ from simconsole.hud.screen import Screen, fit
 from simconsole.hud.view import HudView
 from simconsole.profiles.view import DriverViewProfile
 from simconsole.session.resolution import load_session, resolve
-from simconsole.session.view_job import view_job
+from simconsole.session.view.view_job import view_job
 from simconsole.world.kinds.worlds import open_world
 
 WARM_UP = 10

@@ -16,7 +16,7 @@ from simconsole.processes.byte_slot import ByteSlot
 from simconsole.processes.shared_memory import Ring
 from simconsole.processes.worker import Worker
 from simconsole.profiles.bridge import CameraProfile
-from simconsole.session.view_job import ViewJob, load_view_job
+from simconsole.session.view.view_job import ViewJob, load_view_job
 from simconsole.session.worker_programs import CAMERA, SNAPSHOTS, VIEW_JOB, RoadUsersRing, snapshot_of
 from simconsole.values.state_vector import Snapshot
 from simconsole.world.traffic.road_users import NOBODY_AT_ALL, RoadUsersAt

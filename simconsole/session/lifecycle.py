@@ -33,12 +33,12 @@ from simconsole.recording.log_header import (
 )
 from simconsole.recording.own_signals import stream_of
 from simconsole.session.advice.advice_worker import gives_advice
-from simconsole.session.opening.headless import open_headless
-from simconsole.session.opening.opened import Opened
-from simconsole.session.opening.realtime import open_realtime
+from simconsole.session.headless import open_headless
+from simconsole.session.opened import Opened
 from simconsole.session.paced import keeps_plans
 from simconsole.session.preconditions import check_session, check_world
 from simconsole.session.provenance import package_versions, provenance_at_start, with_devices
+from simconsole.session.realtime import open_realtime
 from simconsole.session.seat import look_for_devices
 from simconsole.tick.advance import SETTINGS, Console, ConsoleState, advance
 from simconsole.tick.assembly import ResolvedSession, assemble

@@ -19,12 +19,12 @@ from simconsole.recording.log_header import PLANS
 from simconsole.session.advice.advice_worker import AdviceWorker, gives_advice
 from simconsole.session.autopilot_program import own_token
 from simconsole.session.camera_worker import CameraWorker
-from simconsole.session.external_view import display_settings
 from simconsole.session.sumo.sumo_memory import signal_bytes, signals_within
 from simconsole.session.sumo.sumo_worker import NAME as SUMO
 from simconsole.session.sumo.sumo_worker import SumoWorker
 from simconsole.session.traffic_source import ShowRoadUsers, TrafficSource, ego_box
-from simconsole.session.view_job import save_view_job, view_job
+from simconsole.session.view.external_view import display_settings
+from simconsole.session.view.view_job import save_view_job, view_job
 from simconsole.session.worker_programs import (
     ACTS,
     ADDRESS,

@@ -88,9 +88,9 @@ class BridgeWorker(Worker, frozen=True, kw_only=True):
         from simconsole.bridge.console.view_topics import NO_VIEW
         from simconsole.bridge.transport.server import serve
         from simconsole.bridge.transport.sockets import address_url
-        from simconsole.session.external_view import external_view
         from simconsole.session.robots import robot_at_work
-        from simconsole.session.view_job import load_view_job
+        from simconsole.session.view.external_view import external_view
+        from simconsole.session.view.view_job import load_view_job
         from simconsole.world.kinds.worlds import road_signals, route_points, running_signals, shown_map
 
         profile = self.profile
@@ -285,7 +285,7 @@ def _tick_of(ring: Ring) -> int:
 
 def _view_scene(folder: Path) -> "ViewScene":
     """Return what the drive's view job describes."""
-    from simconsole.session.view_job import load_view_job
+    from simconsole.session.view.view_job import load_view_job
 
     return load_view_job(folder / VIEW_JOB).scene()
 

@@ -8,7 +8,7 @@ import pytest
 from simconsole.devices.synthetic.trace_format import COLUMNS
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.verification import verify
-from simconsole.session.opening.headless import LOOKED_AT
+from simconsole.session.headless import LOOKED_AT
 from simconsole.values.signals import NEVER_TICKS, Mode, Validity
 from tests.drives.console import complaint, results, simconsole
 

@@ -32,7 +32,7 @@ KILLED = """
 import mmap, os, sys, time
 from pathlib import Path
 from simconsole.recording.bundles.provenance import Given
-from simconsole.session.opening import headless
+from simconsole.session import headless
 from simconsole.session.lifecycle import drive
 from tests.faults.recorded import session
 folder = Path(sys.argv[1])

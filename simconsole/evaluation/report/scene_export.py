@@ -29,7 +29,7 @@ from simconsole.scene.viewer.export import export
 from simconsole.scene.viewer.job import job_of
 from simconsole.session.camera_worker import DrawCamera, drawn_camera
 from simconsole.session.scene_worker import scene_columns, scene_source
-from simconsole.session.view_job import view_job
+from simconsole.session.view.view_job import view_job
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import SimConsoleError, WorkerError
 from simconsole.values.host.files import draft_of

@@ -16,8 +16,8 @@ from simconsole.hud.layout import check_screen
 from simconsole.hud.screen import Screen, fit, text_factor
 from simconsole.hud.window.display_memory import DisplayMemory
 from simconsole.profiles.view import DriverViewProfile, HudProfile
-from simconsole.session.external_view import display_settings
-from simconsole.session.view_job import brought_models, view_job
+from simconsole.session.view.external_view import display_settings
+from simconsole.session.view.view_job import brought_models, view_job
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import ProfileError
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from simconsole.processes.lifetimes import Interrupt
 from simconsole.session.autopilot_program import new_nonce
+from simconsole.session.headless import LOOK_S, lockstep_link
 from simconsole.session.lockstep import LockstepLink
-from simconsole.session.opening.headless import LOOK_S, lockstep_link
 from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import BridgeError

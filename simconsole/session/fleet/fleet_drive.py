@@ -15,10 +15,10 @@ from simconsole.recording.bundles.manifest import Manifest
 from simconsole.recording.bundles.provenance import NOTHING_GIVEN, Given
 from simconsole.session.fleet.fleet_bridge import links
 from simconsole.session.fleet.members import members
+from simconsole.session.headless import open_headless
 from simconsole.session.lifecycle import ENDLESS_TICKS, DriveResult, bundle_of, warm_up
 from simconsole.session.lockstep import LockstepLink
-from simconsole.session.opening.headless import open_headless
-from simconsole.session.opening.opened import Opened
+from simconsole.session.opened import Opened
 from simconsole.session.preconditions import check_session, check_world
 from simconsole.tick.advance import Console, ConsoleState
 from simconsole.tick.assembly import ResolvedSession, assemble

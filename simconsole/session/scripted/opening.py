@@ -16,7 +16,7 @@ from simconsole.drivers.scripted_controller import ScriptedCommands
 from simconsole.processes.lifetimes import Interrupt
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.scenario import ScenarioProfile
-from simconsole.session.opening.headless import open_headless
+from simconsole.session.headless import open_headless
 from simconsole.session.recorder import NoLog
 from simconsole.session.resolution import headless
 from simconsole.session.scripted.actors import ScriptedActors

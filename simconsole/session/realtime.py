@@ -15,7 +15,7 @@ from simconsole.processes.supervisor import SupervisorHandle
 from simconsole.recording.bundles.log import LogWriter
 from simconsole.session.advice.advice_worker import share_advice
 from simconsole.session.autopilot_program import PROGRAM_END_S, new_nonce, own_token, start_autopilot
-from simconsole.session.opening.opened import Opened, commands_over_link, outputs_of, summary_of, traffic_of
+from simconsole.session.opened import Opened, commands_over_link, outputs_of, summary_of, traffic_of
 from simconsole.session.paced import (
     PLAN_HZ,
     CommandPort,

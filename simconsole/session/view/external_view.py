@@ -10,7 +10,7 @@ from simconsole.hud.guidance import guidance_of
 from simconsole.hud.reading import HudReading
 from simconsole.hud.view import HudSettings, settings_of
 from simconsole.profiles.view import ENGLISH, HudProfile
-from simconsole.session.view_job import ViewJob, limit_kmh
+from simconsole.session.view.view_job import ViewJob, limit_kmh
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.state_vector import Snapshot
 from simconsole.world.kinds.worlds import open_world

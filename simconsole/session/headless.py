@@ -15,7 +15,7 @@ from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.session import SessionProfile
 from simconsole.session.autopilot_program import PROGRAM_END_S, new_nonce, own_token, start_autopilot
 from simconsole.session.lockstep import STAND_S, LockstepLink, LockstepServer
-from simconsole.session.opening.opened import Opened, commands_over_link, outputs_of, summary_of, traffic_of
+from simconsole.session.opened import Opened, commands_over_link, outputs_of, summary_of, traffic_of
 from simconsole.session.pacing import UnpacedPacer
 from simconsole.session.recorder import Log, LogRecorder
 from simconsole.session.seat import open_seating
@@ -141,9 +141,9 @@ def _open_lockstep(
     from simconsole.bridge.console.surroundings import Surroundings
     from simconsole.bridge.console.view_topics import NO_VIEW
     from simconsole.bridge.transport.lockstep_server import LockstepBridge
-    from simconsole.session.external_view import display_settings, external_view
     from simconsole.session.robots import robot_at_work
-    from simconsole.session.view_job import view_job
+    from simconsole.session.view.external_view import display_settings, external_view
+    from simconsole.session.view.view_job import view_job
 
     session = resolved.session
     if session.outputs.bridge is None:

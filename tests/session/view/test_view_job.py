@@ -9,7 +9,7 @@ import pytest
 from simconsole.hud.driver_view.gltf import Node, glb
 from simconsole.hud.driver_view.mesh import Box, box
 from simconsole.session.resolution import load_session, override, resolve
-from simconsole.session.view_job import limit_kmh, limits_of, load_view_job, save_view_job, view_job
+from simconsole.session.view.view_job import limit_kmh, limits_of, load_view_job, save_view_job, view_job
 from simconsole.values.errors import ProfileError, WorkerError
 from simconsole.world.kinds.worlds import open_world
 

@@ -11,10 +11,10 @@ from websockets.sync.client import ClientConnection, connect
 from simconsole.hud.driver_view.vehicle_body import Size
 from simconsole.hud.view import HudSettings
 from simconsole.profiles.view import HudProfile
-from simconsole.session.external_view import display_settings, external_view
 from simconsole.session.lifecycle import drive
 from simconsole.session.resolution import load_session, resolve
-from simconsole.session.view_job import ViewJob
+from simconsole.session.view.external_view import display_settings, external_view
+from simconsole.session.view.view_job import ViewJob
 from tests.drives.controllers import command, free_port
 from tests.hud.test_view import snapshot
 from tests.paths import ROOT

@@ -1,0 +1,1 @@
+"""What pictures of a drive are made of, in whichever process draws them."""
