@@ -1,7 +1,9 @@
 """Several robots with one task: they make the whole map known, share out the targets, and go to them."""
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import Final, NamedTuple
+
+import numpy as np
 
 from simconsole.drivers.robots.allocation.exact import optimum
 from simconsole.drivers.robots.allocation.problem import Allocation, Objective, Problem
@@ -12,6 +14,11 @@ from simconsole.drivers.robots.navigation.navigator import Navigator
 from simconsole.drivers.robots.navigation.planner import Surface
 from simconsole.drivers.robots.slam.odometry_track import Array
 from simconsole.values.platform import Pose
+from simconsole.world.arena.occupancy import FREE, OCCUPIED, Grid
+
+TRACE_M: Final = 0.03
+"""Around a robot that stands: what others have seen of it is in the map, and nothing else can be so near."""
+NOTHING: Final[Array] = np.empty((0, 2))
 
 
 class Shared(NamedTuple):
@@ -71,7 +78,8 @@ class Team:
         places = [(pose.x_m, pose.y_m) for pose in starts if pose is not None]
         tasks = [(target.x_m, target.y_m) for target in self.targets]
         planner = self.members[0].navigator.planner
-        problem = problem_by(planner, ground, places, tasks)
+        empty = planner.surface(without_robots(ground.grid, places, planner.touch_m + TRACE_M), NOTHING)
+        problem = problem_by(planner, empty, places, tasks)
         self.explored_s = time_s
         self.shared = Shared(problem, optimum(problem, self._objective))
         for member, tour in zip(self.members, self.shared.allocation.tours, strict=True):
@@ -107,4 +115,16 @@ class Member:
         """Give the navigator its next goal where it needs one (`Mission.step`)."""
         self.pose = pose
         self.mission.step(time_s, pose, points_m)
-        self._team.share_out(time_s, lambda: self.navigator.surface(pose, points_m))
+        # By the map alone: where the others stand now they will not stand when somebody drives there.
+        self._team.share_out(time_s, lambda: self.navigator.surface(pose, points_m[:0]))
+
+
+def without_robots(grid: Grid, places: Sequence[planning.Place], radius_m: float) -> Grid:
+    """Return a map whose cells within `radius_m` of these places, where robots stand, are free."""
+    rows, columns = np.indices(grid.cells.shape)
+    x_m = grid.x_m + (columns + 0.5) * grid.resolution_m
+    y_m = grid.y_m + (rows + 0.5) * grid.resolution_m
+    cells = grid.cells.copy()
+    for x, y in places:
+        cells[(np.hypot(x_m - x, y_m - y) < radius_m) & (cells == OCCUPIED)] = FREE
+    return grid._replace(cells=cells)

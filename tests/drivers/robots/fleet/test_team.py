@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from simconsole.drivers.robots.allocation.problem import Objective
-from simconsole.drivers.robots.fleet.team import Team
+from simconsole.drivers.robots.fleet.team import Team, without_robots
 from simconsole.drivers.robots.navigation.mission import Target
 from simconsole.drivers.robots.navigation.navigator import Navigator, Progress
 from simconsole.values.host.jit import compiled
 from simconsole.values.platform import Pose
-from simconsole.world.arena.occupancy import UNKNOWN, grid_of
+from simconsole.world.arena.occupancy import OCCUPIED, UNKNOWN, grid_of
 from tests.drivers.robots.arena_robot import arena, burger
 
 TARGETS = [Target(spot.name, spot.x_m, spot.y_m, math.radians(spot.yaw_deg)) for spot in arena().targets]
@@ -77,3 +77,13 @@ def test_tasks_done_counts_what_was_gone_to() -> None:
     team = team_of(Objective.SUM)
     assert team.tasks_done == 0
     assert not team.is_done
+
+
+def test_robots_that_stand_are_no_walls_of_the_map_that_ways_are_planned_on() -> None:
+    grid = grid_of(arena(), 0.05)
+    row, column = int((3.2 - grid.y_m) / 0.05), int((3.5 - grid.x_m) / 0.05)
+    walls = int((grid.cells == OCCUPIED).sum())
+    grid.cells[row - 2 : row + 3, column - 2 : column + 3] = OCCUPIED
+    cleared = without_robots(grid, [(3.5, 3.2)], 0.18)
+    assert int((cleared.cells == OCCUPIED).sum()) == walls
+    assert grid.cells[row, column] == OCCUPIED, "the map itself stays"
