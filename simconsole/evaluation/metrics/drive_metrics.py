@@ -7,6 +7,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from simconsole.evaluation.metrics.advice_metrics import advice_metrics
 from simconsole.evaluation.metrics.encounters import encounters
 from simconsole.evaluation.metrics.fault_metrics import plain_spans
 from simconsole.evaluation.metrics.rule_metrics import plain_events
@@ -138,6 +139,7 @@ def metrics(
         "faults": plain_spans(drive, faults),
         "rules": plain_events(drive),
         "road": encounters(drive, way),
+        "speed_advice": advice_metrics(drive, way),
         "force_feedback": force_feedback(drive),
     }
 

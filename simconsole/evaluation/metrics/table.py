@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from simconsole.recording.reading import Recording
+from simconsole.recording.recorded_advice import AdviceAt, recorded_advice
 from simconsole.values.errors import RecordingError
 
 Array = NDArray[np.float64]
@@ -23,6 +24,7 @@ class Drive(NamedTuple):
     tick_hz: int
     first_tick: int = 1
     names: frozenset[str] = frozenset()  # of its columns, where they are known
+    advice: tuple[AdviceAt, ...] = ()  # what its driver was advised
 
     def column(self, name: str) -> Array:
         """Return one column, float64 [ticks].
@@ -127,7 +129,7 @@ def recorded_drive(recording: Recording, told: Callable[[float], object] = lambd
         told: Called with the number of passes made so far, a part of one included; the first one counts the ticks.
 
     Raises:
-        RecordingError: it is empty.
+        RecordingError: it is empty, or what it has of speed advice is none.
     """
     ticks, first, passes = 0, 1, 1
     for block in recording.blocks(()):
@@ -150,4 +152,12 @@ def recorded_drive(recording: Recording, told: Callable[[float], object] = lambd
         if done < ticks:
             raise RecordingError(f"drive: only {done} of its {ticks} ticks were there when it was read again")
 
-    return Drive(read, ticks, recording.header.tick_hz, first, frozenset(recording.header.columns))
+    advice = tuple(recorded_advice(recording))
+    return Drive(
+        read=read,
+        ticks=ticks,
+        tick_hz=recording.header.tick_hz,
+        first_tick=first,
+        names=frozenset(recording.header.columns),
+        advice=advice,
+    )

@@ -43,6 +43,13 @@ _ROAD: Final = (
     ("lights_stood_at", "Stood at, of these"),
     ("let_pass", "Somebody had to be let pass"),
 )
+_ADVICE: Final = (
+    ("lights", "Lights, in all", "{:.0f}"),
+    ("stops", "Stood", "{:.0%}"),
+    ("waiting_s", "Waiting", "{:.1f} s"),
+    ("time_loss_s", "Time lost against the limit", "{:.1f} s"),
+    ("energy_jpkg", "Energy to gain speed", "{:.0f} J/kg"),
+)
 METRICS: Final[tuple[tuple[str, str, str], ...]] = (
     ("duration_s", "Duration", "{:.1f} s"),
     ("distance_m", "Distance", "{:.1f} m"),
@@ -118,6 +125,7 @@ def page(
         _changes_table(found),
         *(("<h2>Take-overs</h2>", _takeovers_table(found)) if found["takeovers"] else ()),
         *(("<h2>On the road</h2>", _road_table(found)) if found["road"] else ()),
+        *(("<h2>Speed advice</h2>", _advice_table(found["speed_advice"])) if found["speed_advice"] else ()),
         *(("<h2>Rules of the road</h2>", _rules_table(found)) if found["rules"] else ()),
         *(("<h2>Faults</h2>", _faults_table(found)) if found["faults"] else ()),
         *(("<h2>Force feedback</h2>", _wheel_table(found["force_feedback"])) if found["force_feedback"] else ()),
@@ -184,6 +192,21 @@ def _changes_table(found: Mapping[str, Any]) -> str:
             f"<td class=n>{change['distance_m']:.1f} m</td><td>{escape(mode)}</td>"
             f"<td>{escape(change['reason'])}</td></tr>"
         )
+    return "\n".join((*lines, "</table>"))
+
+
+def _advice_table(advice: Mapping[str, Any]) -> str:
+    """Return whether advice was followed, and means for a light where it was and where not."""
+    compliance = "-" if advice["compliance"] is None else f"{100.0 * advice['compliance']:.0f} %"
+    lines = [
+        f"<p>Advised before {advice['advised']} of {advice['lights']} lights; driven as advised: {compliance} of the"
+        " time.</p>",
+        "<table><tr><th>For a light, on average</th><th class=n>followed</th><th class=n>not, or none given</th></tr>",
+    ]
+    for key, label, form in _ADVICE:
+        values = (advice[side][key] for side in ("followed", "not_followed"))
+        cells = "".join(f"<td class=n>{'-' if value is None else form.format(value)}</td>" for value in values)
+        lines.append(f"<tr><th>{label}</th>{cells}</tr>")
     return "\n".join((*lines, "</table>"))
 
 

@@ -13,8 +13,7 @@ from typing import Final, NamedTuple
 REACH_M: Final = 300.0
 """A line further away asks for nothing yet: signals are not heard there."""
 LEAST_MPS: Final = 5.0
-"""Nobody is told to drive slower (SUMO's device for the same has this `min-speed`), nor slower than LEAST_SHARE."""
-LEAST_SHARE: Final = 0.5  # of the limit: who creeps is a danger to others
+"""Nobody is told to drive slower: the `min-speed` of SUMO's device for the same."""
 SPARE_S: Final = 1.5
 """The line is passed so long after green has begun, and before it ends, where there is a choice."""
 LEAST_SPARE_S: Final = 0.4
@@ -23,6 +22,8 @@ OLD_S: Final = 1.0
 """Nothing is advised on what was told longer ago."""
 HOLD_S: Final = 1.0
 """A band is shown so long at least, as long as it leads to green."""
+BETTER_MPS: Final = 1.0
+"""A band is not shown for longer than that where one can drive so much faster: nobody creeps towards a green."""
 UP_MPS2: Final = 1.2
 DOWN_MPS2: Final = 1.0
 """How speed is changed for an advice: gently."""
@@ -99,6 +100,7 @@ class SpeedAdvisor:
         low, high = found.widest
         if shown.kind is Advised.SPEED and _same(found.end_s, self._end_s):
             whole = low <= shown.low_mps and shown.high_mps <= high
+            whole = whole and found.advice.target_mps - shown.target_mps < BETTER_MPS
             if low <= shown.target_mps <= high and (whole or now_s - self._since_s < HOLD_S):
                 return shown
         return self._show(found.advice, now_s, found.end_s)
@@ -138,7 +140,7 @@ def band_of(
     begin_s, end_s = green_s
     first_s = begin_s + spare_s if begin_s > 0.0 else 0.0
     last_s = end_s - spare_s
-    least, most = max(LEAST_MPS, LEAST_SHARE * limit_mps), limit_mps
+    least, most = LEAST_MPS, limit_mps
 
     def arrives_s(speed: float) -> float:
         return arrival_s(left_m, speed_mps, speed, reaction_s)

@@ -40,6 +40,18 @@ def test_latency_of_each_hop_stands_in_the_page_only(tmp_path: Path, known: Any)
     assert "latency_us" not in found
 
 
+def test_speed_advice_is_told_where_it_was_given(known: Any, course: Course) -> None:
+    found = metrics(drive_of(*known), course)
+    assert "Speed advice" not in page("title", found, ("", ""), {}, {})
+    followed = {"lights": 3, "stops": 0.0, "waiting_s": 0.0, "time_loss_s": 4.25, "energy_jpkg": 12.0}
+    others = {"lights": 1, "stops": 1.0, "waiting_s": 12.5, "time_loss_s": None, "energy_jpkg": 100.0}
+    advice = {"lights": 4, "advised": 3, "compliance": 0.914, "followed": followed, "not_followed": others}
+    text = page("title", {**found, "speed_advice": advice}, ("", ""), {}, {})
+    assert "Advised before 3 of 4 lights; driven as advised: 91 % of the time." in text
+    assert "<tr><th>Waiting</th><td class=n>0.0 s</td><td class=n>12.5 s</td></tr>" in text
+    assert "<tr><th>Time lost against the limit</th><td class=n>4.2 s</td><td class=n>-</td></tr>" in text
+
+
 def test_page_is_whole_and_needs_nothing_else(tmp_path: Path, known: Any, course: Course) -> None:
     path = tmp_path / "report.html"
     found = written(path, known, course, "Drive <1> & more", {"Vehicle": "hatchback", "Note": "a < b"})

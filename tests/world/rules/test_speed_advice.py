@@ -11,7 +11,6 @@ from simconsole.world.rules.speed_advice import (
     DOWN_MPS2,
     HOLD_S,
     LEAST_MPS,
-    LEAST_SHARE,
     NO_ADVICE,
     STOP,
     UP_MPS2,
@@ -53,8 +52,7 @@ def test_arrival_is_that_of_a_vehicle_that_does_so(
 
 def test_nothing_legal_is_prepare_to_stop() -> None:
     advisor = SpeedAdvisor()
-    least = max(LEAST_MPS, LEAST_SHARE * LIMIT_MPS)
-    assert advisor.advise(100.0, 12.0, LIMIT_MPS, Greens(((100.0 / least + 20.0, 90.0),), 0.0), 0.0) == STOP
+    assert advisor.advise(100.0, 12.0, LIMIT_MPS, Greens(((100.0 / LEAST_MPS + 20.0, 90.0),), 0.0), 0.0) == STOP
     assert advisor.advise(100.0, 12.0, LIMIT_MPS, Greens(((0.0, 5.0),), 0.0), 0.1) == STOP
     found = advisor.advise(100.0, 12.0, LIMIT_MPS, Greens(((0.0, 5.0), (10.0, 40.0)), 0.2), 0.2)
     assert found.kind is Advised.SPEED, "the green after that which ends too soon"
@@ -186,6 +184,15 @@ def test_approaches_that_follow_advice_cross_at_green(sample: Sample, measured: 
         f" the line {len(followed)}, all at green; stood {sum(one.stood for one in results)} against"
         f" {sum(one.stood for one in plain)}, waiting {waits.mean():+.1f} s a drive"
     )
+
+
+def test_nobody_is_left_to_creep_towards_a_green() -> None:
+    """A lower limit held at first: once it is passed, the faster band is shown after a second."""
+    advisor, greens = SpeedAdvisor(), Greens(((0.0, 60.0),), 0.0)
+    slow = advisor.advise(200.0, 6.0, 9.0, greens, 0.0)
+    assert slow.target_mps == 9.0
+    assert advisor.advise(197.0, 6.0, LIMIT_MPS, greens, 0.5) == slow
+    assert advisor.advise(190.0, 6.0, LIMIT_MPS, Greens(((0.0, 59.0),), 1.0), 1.1).target_mps == LIMIT_MPS
 
 
 def test_a_band_does_not_flicker() -> None:
