@@ -76,7 +76,7 @@ def tools(commands: Any) -> None:
     bridge.add_argument("--out", metavar="DIR", default=".", help="where `cert` writes")
 
     new = command(commands, "new", "new.command:new", "a template that runs at once, with a test beside it")
-    new.add_argument("kind", choices=("controller", "scenario", "vehicle", "world", "session"))
+    new.add_argument("kind", choices=("controller", "scenario", "vehicle", "platform", "world", "session"))
     new.add_argument("name", metavar="NAME", help="lower-case letters, digits and _")
     new.add_argument("--out", metavar="DIR", default=".", help="where (default: here)")
 
