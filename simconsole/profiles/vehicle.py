@@ -363,4 +363,24 @@ class TurtlebotProfile(
     odometry: OdometryErrors = OdometryErrors()
 
 
-VehicleProfile: TypeAlias = CarProfile | BallProfile | TurtlebotProfile
+class OwnProfile(
+    msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, tag_field="platform", tag="own"
+):
+    """A vehicle that another package has registered (entry point `simconsole.vehicles`), or an FMU (`kind: fmu`)."""
+
+    kind: Annotated[str, msgspec.Meta(pattern=r"^[a-z][a-z0-9_]{0,60}$")]
+    parameters: dict[str, float] = {}
+    """What differs from its own values; each has bounds of its own."""
+    file: Annotated[str, msgspec.Meta(max_length=4096)] | None = None  # beside the profile: an FMU
+    file_sha256: str = ""  # filled in when it is read
+    names: dict[str, str] = {}  # fields of `VehicleCommand` and `VehicleState`: what the file calls them
+    length_m: Length = 4.2
+    width_m: Length = 1.8
+    height_m: Length = 1.5
+    wheelbase_m: Annotated[float, msgspec.Meta(ge=0.1, le=10.0)] = 2.6
+    rear_overhang_m: Annotated[float, msgspec.Meta(ge=0.0, le=10.0)] = 0.8
+    steering_ratio: Annotated[float, msgspec.Meta(ge=1.0, le=30.0)] = 15.0
+    max_road_wheel_deg: Annotated[float, msgspec.Meta(ge=5.0, le=60.0)] = 35.0
+
+
+VehicleProfile: TypeAlias = CarProfile | BallProfile | TurtlebotProfile | OwnProfile

@@ -134,6 +134,7 @@ def drive(
             "real_time_factor": state.tick / console.tick_hz / wall_s,
             "interrupted": interrupt.raised,
             **opened.summary(),
+            **({} if console.platform.exact else {"bit_exact": False}),
         }
         manifest = bundle.finish(summary)
     _list_what_workers_wrote(folder, manifest)

@@ -96,3 +96,5 @@ class Platform(NamedTuple):
     solid: Solid | None = None  # None: its step takes no impact; where it strikes something a drive ends
     others: int = 0  # as many other platforms it reacts to: circles at the end of `vector` (state_vector.OTHER)
     turns_in_place: bool = False  # it follows a speed and a yaw rate; a car is steered and driven by pedals
+    compiled: bool = True  # False: `step` is called as it is, between compiled stages
+    exact: bool = True  # False: nobody can say that equal commands give equal bits on another machine

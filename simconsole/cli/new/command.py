@@ -6,7 +6,7 @@ from pathlib import Path
 from string import Template
 from typing import Final
 
-from simconsole.cli.new import texts
+from simconsole.cli.new import platform_texts, texts
 from simconsole.cli.outcome import Outcome
 from simconsole.profiles.files.loader import find
 from simconsole.values.errors import ProfileError
@@ -15,6 +15,12 @@ KINDS: Final = {
     "controller": {"$name.py": texts.CONTROLLER, "test_$name.py": texts.TEST_CONTROLLER},
     "scenario": {"$name.yaml": texts.SCENARIO, "test_$name.py": texts.TEST_SCENARIO},
     "vehicle": {"test_$name.py": texts.TEST_VEHICLE},
+    "platform": {
+        "pyproject.toml": platform_texts.PROJECT,
+        "$name.py": platform_texts.PLATFORM,
+        "$name.yaml": platform_texts.PROFILE,
+        "test_$name.py": platform_texts.TEST,
+    },
     "world": {"$name.plan.yaml": texts.WORLD_PLAN, "test_$name.py": texts.TEST_WORLD},
     "session": {"$name.yaml": texts.SESSION, "test_$name.py": texts.TEST_SESSION},
 }

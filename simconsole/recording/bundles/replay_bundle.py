@@ -45,7 +45,10 @@ def recorded_session(bundle: Bundle) -> ResolvedSession:
 
 def sources_sha256(console: Console) -> str:
     """Return what a log says of the sources that made its state vectors."""
-    sources = "".join(map(compiling.digest, (decide, strike, console.platform.step, look_around)))
+    on = console.platform
+    # A step that is not compiled is whatever its package makes of it: it says itself by what it is known, if at all.
+    step = compiling.digest(on.step) if on.compiled else str(getattr(on.step, "digest", on.name))
+    sources = "".join((compiling.digest(decide), compiling.digest(strike), step, compiling.digest(look_around)))
     return hashlib.sha256(sources.encode()).hexdigest()
 
 

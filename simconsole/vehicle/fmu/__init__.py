@@ -1,0 +1,1 @@
+"""Functional mock-up units as vehicles, by fmpy (extra `fmu`)."""

@@ -1,0 +1,75 @@
+"""Vehicles of other packages: found by the entry points `simconsole.vehicles`, their parameters inside bounds."""
+
+from collections.abc import Callable, Mapping
+from importlib.metadata import entry_points
+from typing import Final, NamedTuple
+
+from simconsole.profiles.vehicle import OwnProfile
+from simconsole.values.errors import ProfileError
+from simconsole.values.platform import Ground, Platform, Pose
+
+GROUP: Final = "simconsole.vehicles"
+
+
+class Bounded(NamedTuple):
+    """A parameter: what it is unless the profile says otherwise, and between which values it may be."""
+
+    default: float
+    lowest: float
+    highest: float
+
+
+class OwnSettings(NamedTuple):
+    """What a vehicle is built from."""
+
+    profile: OwnProfile
+    parameters: Mapping[str, float]  # all of them, inside their bounds
+    pose: Pose
+    ground: Ground
+
+
+class OwnVehicle(NamedTuple):
+    """What an entry point names: a kind of vehicle."""
+
+    parameters: Mapping[str, Bounded] | None  # None: it checks its own
+    build: Callable[[OwnSettings], Platform]
+
+
+def registered(kind: str) -> OwnVehicle:
+    """Return the vehicle that is registered by that name.
+
+    Raises:
+        ProfileError: there is none, it cannot be loaded, or is no `OwnVehicle`.
+    """
+    found = {one.name: one for one in entry_points(group=GROUP)}
+    if kind not in found:
+        raise ProfileError(f"vehicle: kind: value {kind}: one of {', '.join(sorted(found))}, as packages register them")
+    try:
+        vehicle = found[kind].load()
+    except ImportError as error:
+        raise ProfileError(f"vehicle: kind: value {kind}: {found[kind].value}: {error}") from error
+    if not isinstance(vehicle, OwnVehicle):
+        raise ProfileError(f"vehicle: kind: value {kind}: {found[kind].value}: an OwnVehicle")
+    return vehicle
+
+
+def build_own(profile: OwnProfile, pose: Pose, ground: Ground, vehicle: OwnVehicle | None = None) -> Platform:
+    """Return a vehicle of another package, or `vehicle`, at rest at `pose`.
+
+    Raises:
+        ProfileError: there is none, or a parameter is unknown or out of its bounds.
+    """
+    own = registered(profile.kind) if vehicle is None else vehicle
+    values = dict(profile.parameters)
+    if own.parameters is not None:
+        for name, value in values.items():
+            if name not in own.parameters:
+                known = ", ".join(own.parameters)
+                raise ProfileError(f"vehicle: parameters: {name}: one of {known}")
+            bounds = own.parameters[name]
+            if not bounds.lowest <= value <= bounds.highest:
+                raise ProfileError(
+                    f"vehicle: parameters: {name}: value {value:g}: {bounds.lowest:g} to {bounds.highest:g}"
+                )
+        values = {name: values.get(name, bounds.default) for name, bounds in own.parameters.items()}
+    return own.build(OwnSettings(profile, values, pose, ground))

@@ -1,0 +1,66 @@
+"""A vehicle of another package: installed beside us, driven, replayed, and refused where it is wrong."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from simconsole.profiles.vehicle import OwnProfile
+from simconsole.values.errors import ProfileError
+from simconsole.values.platform import Ground, Pose
+from simconsole.vehicle.registered import build_own, registered
+from tests.drives.console import simconsole as command
+
+LEVEL = Ground(friction=1.0, slope_x=0.0, slope_y=0.0)
+DRIVES = """
+import sys
+import simconsole
+session = simconsole.load("bridge").with_values({"environment.world": None, "scenario.vehicle": sys.argv[1]})
+drive = session.run(lambda seen: simconsole.hold_speed(6.0, 0.02), duration_s=10.0)
+assert abs(drive.column("vehicle.vx_mps")[-1] - 6.0) < 0.5, drive.column("vehicle.vx_mps")[-1]
+assert drive.column("vehicle.yaw_rad")[-1] > 0.1
+own = [name for name in drive.columns if name.endswith(".speed_mps") and not name.startswith(("ros", "ecu"))]
+assert (drive.column(own[0]) == drive.column("vehicle.vx_mps")).all(), own
+assert drive.replay().hashes_equal
+laden = session.with_values({"parameters.throttle_mps2": 1.0})
+assert laden.run(lambda seen: simconsole.actuate(1.0, 0.0), duration_s=4.0).column("vehicle.vx_mps")[-1] < 4.0
+print(drive.digest)
+"""
+
+
+def installed(folder: Path) -> None:
+    """What pip leaves beside a package of one module."""
+    about = folder / "quick-0.1.0.dist-info"
+    about.mkdir()
+    (about / "METADATA").write_text("Metadata-Version: 2.1\nName: quick\nVersion: 0.1.0\n")
+    (about / "entry_points.txt").write_text("[simconsole.vehicles]\nquick = quick:VEHICLE\nwrong = quick:PARAMETERS\n")
+
+
+@pytest.mark.parametrize("compiled", [False, True], ids=["plain", "compiled"])
+def test_a_vehicle_of_another_package_drives_and_replays(compiled: bool, tmp_path: Path) -> None:
+    assert command("new", "platform", "quick", "--out", tmp_path).returncode == 0
+    installed(tmp_path)
+    source = tmp_path / "quick.py"
+    if compiled:
+        text = source.read_text().replace("compiled=False", "compiled=True")
+        text = text.replace("def step(", "@stage\ndef step(")
+        source.write_text(
+            text.replace(
+                "from simconsole.values.layout",
+                "from simconsole.values.kernels import stage\nfrom simconsole.values.layout",
+            )
+        )
+    program = f"import sys; sys.path.insert(0, {str(tmp_path)!r})\n{DRIVES}"
+    words = [sys.executable, "-c", program, str(tmp_path / "quick.yaml")]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
+def test_what_is_not_registered_is_refused_by_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(ProfileError, match="kind: value nobody: one of fmu"):
+        build_own(OwnProfile(kind="nobody"), Pose(0.0, 0.0, 0.0), LEVEL)
+    installed(tmp_path)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    with pytest.raises(ProfileError, match="kind: value quick: quick:VEHICLE: No module named"):
+        registered("quick")
