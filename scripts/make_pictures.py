@@ -35,8 +35,8 @@ from simconsole.evaluation.video.moments import Moment, moments
 from simconsole.hud.window.raster import snapshot_png
 from simconsole.recording.bundles.bundle import Bundle, open_bundle
 from simconsole.recording.bundles.replay_bundle import recorded_session
-from simconsole.session.view.external_view import display_settings
 from simconsole.session.resolution import language_of
+from simconsole.session.view.external_view import display_settings
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.labels import mode_label
 from simconsole.values.signals import Mode

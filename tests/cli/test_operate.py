@@ -1,7 +1,6 @@
 """An operator at work: `simconsole operate` in a paced drive, and the bundle that is left of it."""
 
 import json
-import socket
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +12,7 @@ from simconsole.recording.bundles.log import LogReader
 from simconsole.values.signals import Event, Mode
 from tests.drives.console import Running, results, simconsole
 from tests.patience import PATIENCE_S, wait_until
+from tests.ports import free_port
 
 SESSION = """schema: 1
 scenario: {vehicle: hatchback, duration_s: 4}
@@ -27,9 +27,7 @@ def test_acts_of_an_operator_are_in_the_drive_and_in_its_bundle(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     session, bundle = tmp_path / "session.yaml", tmp_path / "bundle"
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
+    port = free_port()
     session.write_text(SESSION.replace("PORT", str(port)))
 
     url = f"ws://127.0.0.1:{port}"
@@ -74,9 +72,7 @@ def test_acts_of_an_operator_are_in_the_drive_and_in_its_bundle(
 
 def test_what_an_operator_wrote_outlives_a_drive_that_is_killed(tmp_path: Path) -> None:
     session, bundle = tmp_path / "session.yaml", tmp_path / "bundle"
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
+    port = free_port()
     session.write_text(SESSION.replace("PORT", str(port)).replace("duration_s: 4", "duration_s: 400"))
 
     def operate(*arguments: str) -> int:

@@ -91,7 +91,7 @@ def test_view_shows_a_bundle_in_the_browser_when_told_so(short: Path, tmp_path: 
     with Running(tmp_path / "view", "view", short, "--browser", "--json", BROWSER=str(browser)) as shown:
         wait_until(lambda: shown.process.poll() is not None or seen.exists(), "a browser")
         assert seen.read_text().startswith("http://127.0.0.1:")
-        wait_until(lambda: "browsers of this machine" in shown.err.read_text(), "the address")
+        wait_until(lambda: shown.said("browsers of this machine"), "the address")
         os.kill(shown.process.pid, signal.SIGINT)
         done = shown.end()
     assert done.returncode == 130, done.stderr

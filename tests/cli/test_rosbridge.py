@@ -16,9 +16,10 @@ from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Origin
 
 from tests.drives.console import Running, complaint, results, simconsole
-from tests.drives.controllers import Controller, command, free_port
+from tests.drives.controllers import Controller, command
 from tests.paths import ROOT
 from tests.patience import PATIENCE_S, wait_until
+from tests.ports import free_port
 
 
 def test_a_controller_reads_and_commands_a_standing_car(tmp_path: Path) -> None:
@@ -54,7 +55,7 @@ def copied_example(folder: Path) -> Iterator[tuple[subprocess.Popen[bytes], Call
     with Running(folder, "bridge", "serve", "--port", port, "--json") as server:
         watcher = Controller(port, lambda count, stamp: [json.dumps(command(stamp))] if not driving else [])
         watcher.start()
-        wait_until(lambda: "parked: nobody has asked for autonomy" in server.out.read_text(), "the notice")
+        wait_until(lambda: server.said("parked: nobody has asked for autonomy"), "the notice")
         driving.append(subprocess.Popen([sys.executable, str(program)]))
         try:
             with connect(f"ws://127.0.0.1:{port}") as viewer:
@@ -110,7 +111,7 @@ def test_it_ends_by_itself_when_told_so() -> None:
 
 def test_port_of_the_system_s_choice_is_said(tmp_path: Path) -> None:
     with Running(tmp_path, "bridge", "serve", "--port", 0, "--json") as server:
-        wait_until(lambda: "rosbridge at" in server.out.read_text(), "the address")
+        wait_until(lambda: server.said("rosbridge at"), "the address")
         port = int(server.out.read_text().split("rosbridge at ws://127.0.0.1:")[1].split()[0])
         controller = Controller(port, lambda count, stamp: [])
         controller.start()
@@ -176,7 +177,7 @@ def test_limits_and_origins_are_those_of_the_options(tmp_path: Path) -> None:
     port = free_port()
     options = ("--origin", "null", "--limit", "message_bytes=2000", "--limit", "clients=3")
     with Running(tmp_path, "bridge", "serve", "--port", port, *options) as server:
-        wait_until(lambda: "rosbridge at" in server.out.read_text(), "the address")
+        wait_until(lambda: server.said("rosbridge at"), "the address")
         url = f"ws://127.0.0.1:{port}"
         with pytest.raises(InvalidStatus):
             connect(url, origin=Origin("file://"))

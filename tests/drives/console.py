@@ -71,6 +71,13 @@ class Running:
         """What a terminal does at Ctrl-C."""
         os.killpg(self.process.pid, signal.SIGINT)
 
+    def said(self, text: str) -> bool:
+        """Whether it has said so; one that has ended without is no longer waited for."""
+        running = self.process.poll() is None
+        found = text in self.out.read_text("utf-8") + self.err.read_text("utf-8")
+        assert found or running, self.err.read_text("utf-8")
+        return found
+
     def end(self) -> "subprocess.CompletedProcess[str]":
         """Wait for its end and return it as `simconsole` does."""
         code = self.process.wait(PATIENCE_S)

@@ -14,13 +14,6 @@ from tests.patience import wait_until
 CONTROL = "/control/command/control_cmd"
 
 
-def free_port() -> int:
-    """A port that nobody listens on now."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
-
-
 def command(stamp: dict[str, int], acceleration: object = 1.2, steering: object = 0.0) -> dict[str, Any]:
     """An autoware_control_msgs/Control as rosbridge carries it."""
     return {

@@ -18,8 +18,9 @@ from simconsole.recording.reading import LogTable
 from simconsole.session.lifecycle import drive
 from simconsole.session.resolution import load_session, override, resolve
 from simconsole.values.signals import Mode
-from tests.drives.controllers import Controller, command, free_port
+from tests.drives.controllers import Controller, command
 from tests.patience import PATIENCE_S
+from tests.ports import free_port
 
 TOPIC_FORMATS = ("mcap", "rosbag2")
 SESSION = """\

@@ -17,8 +17,8 @@ from simconsole.recording.bundles.verification import verify
 from simconsole.recording.reading import LogTable
 from simconsole.values.signals import Mode
 from tests.drives.console import Running, environment
-from tests.drives.controllers import free_port
 from tests.patience import PATIENCE_S
+from tests.ports import free_port
 
 EXAMPLE = Path(simconsole.__file__).parents[1] / "examples" / "roll_a_ball" / "roll_a_ball.py"
 WAYPOINTS_M = [(2.0, 0.0), (2.0, 2.0), (0.0, 2.0), (0.0, 0.0)]

@@ -17,8 +17,9 @@ from simconsole.session.lifecycle import DriveResult, drive
 from simconsole.session.resolution import load_session, override, resolve
 from simconsole.values.signals import Event, Mode, Reason
 from tests.drives.console import Running
-from tests.drives.controllers import Controller, command, free_port
+from tests.drives.controllers import Controller, command
 from tests.patience import PATIENCE_S, wait_until
+from tests.ports import free_port
 
 TICK_HZ = 250
 PERIOD_TICKS = 5

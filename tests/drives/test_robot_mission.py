@@ -24,8 +24,8 @@ from simconsole.values.platform import Pose
 from simconsole.world.arena.outlines import outlines_of
 from tests.drivers.robots.arena_robot import arena, burger
 from tests.drives.console import Running
-from tests.drives.controllers import free_port
 from tests.patience import PATIENCE_S
+from tests.ports import free_port
 from tests.samples import Sample
 
 FIRST = arena().starts[0]

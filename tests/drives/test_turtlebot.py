@@ -17,8 +17,8 @@ from simconsole.recording.bundles.replay_bundle import replay_bundle
 from simconsole.recording.bundles.verification import verify
 from simconsole.values.signals import Mode
 from tests.drives.console import Running, environment, simconsole
-from tests.drives.controllers import free_port
 from tests.patience import PATIENCE_S
+from tests.ports import free_port
 
 PROGRAM = Path(__file__).with_name("turtlebot_client.py")
 SECONDS = 14

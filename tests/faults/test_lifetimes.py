@@ -23,7 +23,6 @@ from simconsole.recording.bundles.verification import verify
 from simconsole.values.errors import OtherDriveError
 from simconsole.values.signals import Event, Mode
 from tests.drives.console import Running, environment, simconsole, words
-from tests.drives.controllers import free_port
 from tests.faults.lives import (
     Life,
     holders,
@@ -35,6 +34,7 @@ from tests.faults.lives import (
     write_session,
 )
 from tests.patience import PATIENCE_S, Stopwatch, pause, wait_until
+from tests.ports import free_port
 from tests.samples import Measured, Sample
 
 PROGRAM = "--course"

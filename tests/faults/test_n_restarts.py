@@ -20,8 +20,8 @@ from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.signals import Mode
 from tests.bridge.fixtures import Served
 from tests.drives.console import Running
-from tests.drives.controllers import free_port
 from tests.patience import Stopwatch
+from tests.ports import free_port
 from tests.samples import Measured, Sample
 
 RESTARTS = 100

@@ -18,9 +18,9 @@ import pytest
 from simconsole.bridge.client.bridge_client import BridgeClient
 from simconsole.recording.bundles.verification import verify
 from tests.drives.console import Running, results
-from tests.drives.controllers import free_port
 from tests.faults.test_whole_drives import PERSON
 from tests.patience import PATIENCE_S, wait_until
+from tests.ports import free_port
 from tests.samples import Measured, Sample
 from tests.session.test_paced import TICK_HZ, drive
 

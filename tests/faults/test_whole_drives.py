@@ -25,9 +25,10 @@ from simconsole.values.signals import Event, Mode, Reason
 from simconsole.values.state_vector import INPUT_WIDTH
 from tests.bridge.networks import go_deaf
 from tests.drives.console import results, simconsole
-from tests.drives.controllers import Controller, command, free_port
+from tests.drives.controllers import Controller, command
 from tests.faults.course import CAR_M, HZ, LANE_M, circuit
 from tests.patience import PATIENCE_S
+from tests.ports import free_port
 
 IN_LANE_M = 0.5 * (LANE_M - CAR_M)
 SESSION = """schema: 1

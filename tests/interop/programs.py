@@ -11,9 +11,9 @@ from typing import Any
 
 from websockets.sync.client import ClientConnection, connect
 
-from tests.drives.controllers import free_port
 from tests.paths import ROOT
 from tests.patience import PATIENCE_S, wait_until
+from tests.ports import free_port
 
 HERE = Path(__file__).parent
 CACHE = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "simconsole-tests"

@@ -8,10 +8,10 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
-from tests.drives.controllers import free_port
 from tests.interop.programs import HERE, program, wait_for_port
 from tests.interop.ros2 import PYTHON
 from tests.patience import PATIENCE_S
+from tests.ports import free_port
 
 
 class Puppet:

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.drives.controllers import free_port
 from tests.interop.programs import HERE, client, console, environment, program, wait_for_port
 from tests.interop.ros1_packages import PYTHON, make_packages
+from tests.ports import free_port
 
 TABLE = {
     "out": {"/odom": "nav_msgs/Odometry", "/clock": "rosgraph_msgs/Clock"},

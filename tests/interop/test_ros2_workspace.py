@@ -18,11 +18,11 @@ from xml.etree import ElementTree
 import pytest
 import yaml
 
-from tests.drives.controllers import free_port
 from tests.interop.programs import program
 from tests.interop.ros2 import PYTHON, domain, needs_ros2
 from tests.paths import ROOT
 from tests.patience import PATIENCE_S
+from tests.ports import free_port
 
 PACKAGE = ROOT / "examples/ros2_ws/src/simconsole_controllers"
 NAME = PACKAGE.name

@@ -13,10 +13,10 @@ import pytest
 from mcap.reader import make_reader
 
 from simconsole.cli.main import main
-from tests.drives.controllers import free_port
 from tests.interop.programs import CACHE, HERE, environment, program, wait_for_port
 from tests.interop.sessions import lockstep_session
 from tests.patience import PATIENCE_S
+from tests.ports import free_port
 
 VERSION = "2.1.0"
 FOLDER = CACHE / f"roslib-{VERSION}"

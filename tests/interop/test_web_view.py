@@ -25,11 +25,11 @@ from websockets.sync.client import ClientConnection
 from simconsole.profiles.files.world_files import load_world
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.world.kinds.worlds import route_points
-from tests.drives.controllers import free_port
 from tests.interop.browser import CHROMIUM, Page, browse
 from tests.interop.programs import CACHE, client, environment, program, wait_for_port
 from tests.paths import ROOT
 from tests.patience import PATIENCE_S, wait_until
+from tests.ports import free_port
 
 EXAMPLE = ROOT / "examples" / "web_view"
 NPM = shutil.which("npm")

@@ -12,9 +12,9 @@ from simconsole.profiles.files.world_files import load_world
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.world.kinds.worlds import open_world
 from tests.drives.console import complaint, simconsole
-from tests.drives.controllers import free_port
 from tests.hud.gl.test_camera_picture import decoded
 from tests.interop.programs import Client, client, environment, program, wait_for_port
+from tests.ports import free_port
 
 SESSION = """\
 schema: 1

@@ -2,7 +2,6 @@
 
 import os
 import signal
-import socket
 import subprocess
 from pathlib import Path
 from typing import Any
@@ -25,6 +24,7 @@ from simconsole.values.signals import Notice
 from simconsole.values.state_vector import Snapshot
 from simconsole.world.sumo_traffic import engines
 from simconsole.world.sumo_traffic.engines import sumo_program
+from tests.ports import free_port
 from tests.world.sumo_traffic.on_sumo import NET, configuration
 
 Frames = tuple[list[bytes], list[bytes], list[Any]]
@@ -98,9 +98,7 @@ def test_own_configuration_beside_the_session_is_run(tmp_path: Path) -> None:
 def test_sumo_that_waits_elsewhere_is_joined(tmp_path: Path) -> None:
     program = sumo_program()
     assert program is not None
-    with socket.socket() as one:
-        one.bind(("127.0.0.1", 0))
-        port = one.getsockname()[1]
+    port = free_port()
     config = configuration(tmp_path, '<vehicle id="v" depart="0"><route edges="road0 road1"/></vehicle>')
     words = [program, "-c", config, "--step-length", "0.04", "--no-step-log", "true", "--remote-port", str(port)]
     with subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as sumo:

@@ -22,9 +22,9 @@ from simconsole.bridge.transport.server import BridgeServer
 from simconsole.bridge.transport.upstream_client import UpstreamClient
 from simconsole.profiles.bridge import BridgeProfile, UpstreamProfile
 from simconsole.values.errors import ProfileError
-from tests.drives.controllers import free_port
 from tests.paths import ROOT
 from tests.patience import until
+from tests.ports import free_port
 
 CONTROL = "/control/command/control_cmd"
 

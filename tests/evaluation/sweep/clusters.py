@@ -9,8 +9,8 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
-from tests.drives.controllers import free_port
 from tests.patience import wait_until
+from tests.ports import free_port
 
 
 class Cluster(NamedTuple):

@@ -13,9 +13,9 @@ import pytest
 
 from simconsole.scene.viewer.scene_server import HOST, SceneServer, open_native
 from simconsole.values.errors import WorkerError
-from tests.drives.controllers import free_port
 from tests.paths import ROOT
 from tests.patience import wait_until
+from tests.ports import free_port
 from tests.scene.viewer.test_export import exported, rerun_rrd
 from tests.scene.viewer.viewers import listening_hosts, live_scene, viewer
 

@@ -7,7 +7,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from simconsole.scene.viewer.scene_server import quiet_environment, rerun_program
-from tests.drives.controllers import free_port
+from tests.ports import free_port
 from tests.scene.viewer.test_export import rerun_rrd
 
 

@@ -15,10 +15,11 @@ from simconsole.session.lifecycle import drive
 from simconsole.session.resolution import load_session, resolve
 from simconsole.session.view.external_view import display_settings, external_view
 from simconsole.session.view.view_job import ViewJob
-from tests.drives.controllers import command, free_port
+from tests.drives.controllers import command
 from tests.hud.test_view import snapshot
 from tests.paths import ROOT
 from tests.patience import PATIENCE_S, wait_until
+from tests.ports import free_port
 
 SESSION = """\
 schema: 1
