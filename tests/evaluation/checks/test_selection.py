@@ -40,7 +40,7 @@ def test_a_folder_stands_for_its_scenarios_and_for_nothing_else(tmp_path: Path) 
     found = selected([str(ROOT / "profiles" / "scenarios")])
     assert str(ROOT / "profiles/scenarios/hand_over.yaml") in found
     assert str(ROOT / "profiles/scenarios/handling/weave.yaml") in found
-    assert found == sorted(found)
+    assert found == [str(path) for path in sorted(map(Path, found))]
     assert not is_scenario(ROOT / "profiles/sessions/demo.yaml")
     assert not is_scenario(tmp_path / "nowhere.yaml")
     with pytest.raises(ProfileError, match="no scenario in it"):
