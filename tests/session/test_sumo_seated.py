@@ -25,9 +25,9 @@ from simconsole.values.signals import Notice
 from simconsole.values.state_vector import Snapshot
 from simconsole.world.kinds.worlds import running_signals
 from tests.drives.console import Running
-from tests.drives.controllers import free_port
 from tests.interop.programs import client, wait_for_port
 from tests.patience import PATIENCE_S
+from tests.ports import free_port
 from tests.world.sumo_traffic.on_sumo import configuration
 from tests.world.sumo_traffic.test_sumo_traffic import ACTUATED
 

@@ -17,7 +17,7 @@ from simconsole.recording.bundles.verification import verify
 from simconsole.session.fleet.fleet_drive import drive_fleet
 from simconsole.session.resolution import resolve
 from simconsole.values.signals import Mode
-from tests.drives.controllers import free_port
+from tests.ports import free_port
 from tests.session.fleet.fleet_client import NAMES, FleetClient
 
 SECONDS = 6.0
