@@ -111,7 +111,7 @@ def test_sumo_that_waits_elsewhere_is_joined(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["SIGKILL", "SIGSTOP"])
 def test_drive_goes_on_and_says_so_when_sumo_fails(name: str) -> None:
-    resolved = session(backend="traci", timeout_s=0.3, radius_m=1500.0)
+    resolved = session(backend="traci", timeout_s=2.0, radius_m=1500.0)
     console, state = assemble(resolved, compiled)
     source = open_traffic(resolved, console)
     assert source is not None

@@ -35,6 +35,7 @@ class Engine(NamedTuple):
     errors: tuple[type[BaseException], ...]  # what its calls raise
     close: Callable[[], None]  # ends it, or this client's part in it; never raises
     process: "subprocess.Popen[bytes] | None" = None
+    expect_answers: Callable[[], None] = lambda: None  # from here on, one that takes too long is none
 
 
 def missing(profile: SumoProfile) -> str | None:
@@ -139,15 +140,18 @@ def _connected(profile: SumoProfile, host: str, port: int, process: "subprocess.
                 _end(process)
                 raise ProfileError(f"{KEY}.address: value {host}:{port}: a SUMO that listens") from None
             time.sleep(_LOOK_S)
-    # A SUMO that hangs is one that has not answered for so long; traci has no bound of its own.
-    connection._socket.settimeout(profile.timeout_s)
+    connection._socket.settimeout(CONNECT_S)
+
+    def expect_answers() -> None:
+        # A SUMO that hangs is one that has not answered for so long; traci has no bound of its own.
+        connection._socket.settimeout(profile.timeout_s)
 
     def close() -> None:
         with contextlib.suppress(*errors, AttributeError):
             connection.close(wait=False)
         _end(process)
 
-    return Engine(connection, errors, close, process)
+    return Engine(connection, errors, close, process, expect_answers)
 
 
 def said_by(process: "subprocess.Popen[bytes] | None") -> str:

@@ -86,6 +86,7 @@ class SumoTraffic:
             except self._errors as error:
                 reason = said_by(engine.process) or ascii(str(error))[1:-1][:200]
                 raise ProfileError(f"{KEY}: SUMO: {reason}: a simulation that starts") from None
+            engine.expect_answers()
             self._stack = stack.pop_all()
 
     def road_users(self) -> Array:

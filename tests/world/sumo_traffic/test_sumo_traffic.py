@@ -226,7 +226,7 @@ def test_ego_is_handed_back_before_the_end(monkeypatch: pytest.MonkeyPatch) -> N
 
 @pytest.mark.parametrize("name", ["SIGKILL", "SIGSTOP"])
 def test_drive_goes_on_without_a_sumo_that_is_gone_or_hangs(name: str) -> None:
-    with sumo_traffic(box(100.0), vehicles=30, radius_m=1500.0, backend="traci", timeout_s=0.3) as traffic:
+    with sumo_traffic(box(100.0), vehicles=30, radius_m=1500.0, backend="traci", timeout_s=2.0) as traffic:
         assert len(traffic.step(box(100.0))) > 5
         assert traffic.process is not None
         traffic.process.send_signal(getattr(signal, name))
