@@ -1,6 +1,6 @@
 """Our speed advice beside SUMO's own device for it (device.glosa), on equal roads, demand and seeds.
 
-Run: python benchmarks/speed_advice.py [--seeds N] [--vehicles N] [--minutes M]
+Run: python benchmarks/speed_advice.py [--seeds N] [--first SEED] [--vehicles N] [--minutes M]
 
 A grid of netgenerate's with fixed programs and 300 m between lights; every vehicle is equipped, or none. The device
 gets our range and lower bound of speed. Vehicles of ours drive no faster than the advisor says, and slow down as gently
@@ -53,13 +53,14 @@ class Trips(NamedTuple):
 def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--seeds", type=int, default=10, choices=[one + 1 for one in _T_95])
+    parser.add_argument("--first", type=int, default=1, metavar="SEED", help="seeds from this one on")
     parser.add_argument("--vehicles", type=int, default=300, help="an hour")
     parser.add_argument("--minutes", type=float, default=20.0)
     given = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         net = _city(Path(folder))
         found: dict[str, list[Trips]] = {"none": [], "device": [], "ours": []}
-        for seed in range(1, given.seeds + 1):
+        for seed in range(given.first, given.first + given.seeds):
             routes = _demand(net, Path(folder), seed, given.vehicles, 60.0 * given.minutes)
             for who, trips in found.items():
                 trips.append(_simulated(who, net, routes, seed, Path(folder)))
