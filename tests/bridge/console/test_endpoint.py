@@ -234,3 +234,35 @@ def test_the_commander_and_rosout_are_told_which_limit_a_command_has_broken(
         (30, f"AUTONOMOUS: drive started; refused: too much lateral acceleration ({broken})"),
         (20, "AUTONOMOUS: drive started"),
     ]
+
+
+def test_platforms_of_a_session_have_a_commander_and_topics_each_and_tf_together(
+    join: Callable[..., Any], snapshot: Callable[..., Any], control: Callable[..., Any]
+) -> None:
+    first = ConsoleBridge(BridgeProfile(port=0, namespace="/one"))
+    second = ConsoleBridge(BridgeProfile(port=0, namespace="/two"), beside=first)
+    one, two, viewer = join(first), join(second), join(first)
+    assert one.publish("/one" + CONTROL, control(0.1)).kind == "command"
+    assert two.publish("/two" + CONTROL, control(0.2)).kind == "command"
+    assert (first.inputs.take(1)[0].road_wheel_rad, second.inputs.take(1)[0].road_wheel_rad) == (0.1, 0.2)
+    for topic in ("/tf", "/clock", "/one/odom", "/two/odom"):
+        viewer.send(op="subscribe", topic=topic)
+    first.publish(snapshot(5), 0)
+    second.publish(snapshot(5), 0)
+    heard = [message["topic"] for message in viewer.heard()]
+    assert sorted(heard) == ["/clock", "/one/odom", "/tf", "/tf", "/two/odom"]
+    assert two.publish("/one" + CONTROL, control(0.3)).kind == "refused", "somebody else's"
+    assert two.send("no message").kind == "refused"
+    assert (first.inputs.take(2)[0].refused, second.inputs.take(2)[0].refused) == (0.0, 1.0)
+
+
+def test_a_limit_that_a_command_has_broken_is_told_to_nobody_where_its_sender_is_gone(
+    join: Callable[..., Any], snapshot: Callable[..., Any]
+) -> None:
+    bridge = ConsoleBridge(BridgeProfile(port=0), around=Surroundings(steering=SteeringLimit(10.0, 2.5)))
+    listener = join(bridge)
+    state = snapshot(1, mode=3.0, kind=1.0, vx_mps=10.0, sequence=1.0, refusal=float(Reason.REFUSED_IMPLAUSIBLE))
+    state.vector[LAYOUT.ros_link.start + Link._fields.index("implausible")] = 1.0
+    state.vector[LAYOUT.ros.start + RemoteCommand._fields.index("road_wheel_rad")] = 0.5
+    bridge.publish(state, 0)
+    assert listener.statuses() == []
