@@ -137,7 +137,7 @@ def drive(
             **({} if console.platform.exact else {"bit_exact": False}),
         }
         manifest = bundle.finish(summary)
-    _list_what_workers_wrote(folder, manifest)
+    list_what_workers_wrote(folder, manifest)
     return DriveResult(
         folder=folder,
         ticks=manifest.ticks,
@@ -172,7 +172,7 @@ def _open(
     return opened
 
 
-def _list_what_workers_wrote(folder: Path, manifest: Manifest) -> None:
+def list_what_workers_wrote(folder: Path, manifest: Manifest) -> None:
     """List the files that workers have written beside the log; they are whole only once their workers have ended."""
     if not manifest.finished:
         return

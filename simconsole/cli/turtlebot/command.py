@@ -128,7 +128,10 @@ def _driven(resolved: ResolvedSession, folder: Path, objective: str, progress: P
             until_left=True,
             on_bridge=start,
         )
-        code = started[0].wait(PATIENCE_S)
+        try:
+            code = started[0].wait(PATIENCE_S)
+        except subprocess.TimeoutExpired:
+            raise WorkerError(f"the robots' program has not ended {PATIENCE_S:g} s after the drive") from None
     finally:
         end(started, 0.3)
     readers[0].join()

@@ -25,6 +25,10 @@ STROKE_RAD: Final = 4.0 * RAD_PER_DEG
 RAISED: Final = 1.4
 """A stroke that was too weak is tried again with so many times its torque."""
 STROKE_RADPS: Final = 45.0 * RAD_PER_DEG
+MOST_RAD: Final = 15.0 * RAD_PER_DEG
+MOST_RADPS: Final = 120.0 * RAD_PER_DEG
+RATE_S: Final = 0.012
+"""A rate is the way of so long: a wheel's angle comes in steps."""
 PULSE_S: Final = 0.12
 HELD_TICKS: Final = 2
 """A torque is held for so many ticks: no device's rate of updates is slower."""
@@ -48,7 +52,10 @@ class Identified(NamedTuple):
 
 
 class Tape:
-    """A `Turn` that keeps what was asked for and what was read, and asks only for levels that the device has."""
+    """A `Turn` that keeps what was asked for and what was read, and asks only for levels that the device has.
+
+    It lets go of a wheel that is too fast or too far off: somebody has held it, and the motor pushed against them.
+    """
 
     def __init__(self, turn: Turn, force: ForceFeedback, tick_hz: int) -> None:
         self._turn = turn
@@ -58,7 +65,11 @@ class Tape:
         self.rad: list[float] = []
 
     def turn(self, torque_nm: float) -> float:
-        """Let a tick pass; a new torque begins at every second tick only."""
+        """Let a tick pass; a new torque begins at every second tick only.
+
+        Raises:
+            DeviceError: the wheel is beyond MOST_RAD or MOST_RADPS; it has been let go of.
+        """
         if len(self.asked_nm) % HELD_TICKS:
             torque_nm = self.asked_nm[-1]
         else:
@@ -66,6 +77,11 @@ class Tape:
         rad = self._turn(torque_nm)
         self.asked_nm.append(torque_nm)
         self.rad.append(rad)
+        ticks = min(len(self.rad) - 1, round(RATE_S * self.tick_hz))
+        radps = abs(rad - self.rad[-1 - ticks]) * self.tick_hz / max(ticks, 1)
+        if abs(rad) > MOST_RAD or radps > MOST_RADPS:
+            self._turn(0.0)
+            raise DeviceError("wheel: motion: value too fast or too far: a wheel that nobody holds; identify again")
         return rad
 
 
@@ -94,11 +110,9 @@ def identify(
         move(tape.turn, rules, 0.0, 1.0)
     rough = fitted(tape)
     say(f"first look: delay {1000.0 * rough.delay_s:.0f} ms, {rough.accel_per_nm:.0f} rad/s2 per N m")
-    strokes, raised = 0, 1.0
-    while strokes < STROKES:
-        if _stroke(tape, rough, rules, 1.0 if strokes % 2 == 0 else -1.0, raised):
-            strokes += 1
-        else:
+    for stroke in range(STROKES):
+        raised = 1.0
+        while not _stroke(tape, rough, rules, 1.0 if stroke % 2 == 0 else -1.0, raised):
             raised *= RAISED
     return fitted(tape)
 

@@ -16,7 +16,7 @@ from simconsole.recording.bundles.provenance import NOTHING_GIVEN, Given
 from simconsole.session.fleet.fleet_bridge import links
 from simconsole.session.fleet.members import members
 from simconsole.session.headless import open_headless
-from simconsole.session.lifecycle import ENDLESS_TICKS, DriveResult, bundle_of, warm_up
+from simconsole.session.lifecycle import ENDLESS_TICKS, DriveResult, bundle_of, list_what_workers_wrote, warm_up
 from simconsole.session.lockstep import LockstepLink
 from simconsole.session.opened import Opened
 from simconsole.session.preconditions import check_session, check_world
@@ -81,6 +81,7 @@ def drive_fleet(
             ]
         wall_s = time.monotonic() - began_s
         manifests = _finish(fleet, states, wall_s, interrupt.raised)
+    list_what_workers_wrote(folder, manifests[0])
     failures = [manifest.recording_failure for manifest in manifests if manifest.recording_failure is not None]
     first = manifests[0]
     return DriveResult(

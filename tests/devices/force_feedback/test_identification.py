@@ -55,3 +55,23 @@ def test_wheel_that_is_held_or_turns_the_other_way_is_said(force: ForceFeedback)
     other = BenchedWheel(force, Draw())
     with pytest.raises(DeviceError, match="turns the other way"):
         identify(lambda torque_nm: other.turn(-torque_nm), force, 0.4, TICK_HZ)
+
+
+@pytest.mark.parametrize(("from_s", "to_s"), [(2.0, 4.0), (4.0, 10.0)])
+def test_wheel_that_somebody_held_is_let_go_of_before_it_is_fast(
+    force: ForceFeedback, from_s: float, to_s: float
+) -> None:
+    wheel = BenchedWheel(force, Draw())
+    asked: list[float] = []
+
+    def held(torque_nm: float) -> float:
+        asked.append(torque_nm)
+        by_hand = from_s <= len(asked) / TICK_HZ < to_s
+        return wheel.turn(0.0 if by_hand else torque_nm)
+
+    try:
+        identify(held, force, 0.4, TICK_HZ)
+    except DeviceError:
+        assert asked[-1] == 0.0
+    assert wheel.furthest_rad * DEG_PER_RAD <= 17.0
+    assert wheel.fastest_radps * DEG_PER_RAD <= 140.0, "120 deg/s, and what the delay adds"

@@ -136,3 +136,15 @@ def test_two_drives_are_equal(driven: Driven, tmp_path: Path) -> None:
     again = Driven(tmp_path, SPEEDS)
     assert again.digests() == driven.digests()
     assert len(set(again.digests())) == 3
+
+
+def test_topics_that_the_server_has_kept_are_in_the_manifest(tmp_path: Path) -> None:
+    port = free_port()
+    client = FleetClient(f"ws://127.0.0.1:{port}", [(0.0, 0.0)] * 3)
+    thread = threading.Thread(target=client.run)
+    thread.start()
+    outputs = {"bridge": {"port": port, "record": ["*"]}, "hud": None}
+    drive_fleet(resolve(session_of(port, 1.0, outputs=outputs)), tmp_path / "bundle")
+    thread.join()
+    assert "topics.mcap" in read_manifest(tmp_path / "bundle").files
+    assert verify(tmp_path / "bundle") == []
