@@ -78,7 +78,7 @@ class Driven:
                 dead_after_s=math.inf,
             )
 
-        slam = threading.Thread(target=map_it, name="slam")
+        slam = threading.Thread(target=map_it, name="slam", daemon=True)
         slam.start()
         assert listens.wait(PATIENCE_S)
         navigator = Navigator(burger(), compiled)
@@ -92,6 +92,7 @@ class Driven:
             dead_after_s=math.inf,
         )
         slam.join(PATIENCE_S)
+        assert not slam.is_alive(), "it has not heard that the drive is over"
 
     def mission(self, navigator: Navigator) -> Mission | None:
         return Mission(navigator, TARGETS)

@@ -4,6 +4,7 @@ import logging
 import socket
 import ssl
 import time
+from contextlib import suppress
 from http import HTTPStatus
 from typing import Final
 
@@ -220,5 +221,17 @@ class ClientConnection:
                 self._socket.settimeout(self._timeout_s)
                 self._socket.sendall(data)
         except OSError as error:
+            self._hear_the_end()
             self.abort()
             raise BridgeError(f"{self.url}: connection lost: {error}") from None
+
+    def _hear_the_end(self) -> None:
+        """Read what came before a connection was lost: a server that has said good-bye waits half a second only."""
+        assert self._socket is not None
+        assert self._web is not None
+        with suppress(OSError):
+            self._socket.setblocking(False)
+            while data := self._socket.recv(RECEIVE_BYTES):
+                self._web.receive_data(data)
+        if self._web.close_rcvd is not None:
+            self.close_code = self._web.close_rcvd.code

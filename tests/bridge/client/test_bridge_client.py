@@ -1,10 +1,14 @@
 import math
+import select
 import socket
 import threading
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
+from websockets.http11 import Request
+from websockets.protocol import State
+from websockets.server import ServerProtocol
 from websockets.sync.server import Server, ServerConnection
 from websockets.sync.server import serve as serve_websockets
 
@@ -286,3 +290,36 @@ def test_services_and_actions_both_ways(serving: Callable[..., Any]) -> None:
         assert caller.call_service("/rosapi/get_time", None, take)
         caller.disconnect()
         assert answers[4] == ("the connection has ended", False)
+
+
+def test_good_bye_is_heard_by_who_was_busy_when_the_server_said_it_and_went() -> None:
+    """It gives clients half a second. What they sent meanwhile and nobody read makes the kernel cut the rest off."""
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+
+        def leave() -> None:
+            peer, _ = listener.accept()
+            web = ServerProtocol()
+            with peer:
+                while web.state is State.CONNECTING:
+                    web.receive_data(peer.recv(1000))
+                    for event in web.events_received():
+                        assert isinstance(event, Request)
+                        web.send_response(web.accept(event))
+                    peer.sendall(b"".join(web.data_to_send()))
+                select.select([peer], [], [], PATIENCE_S)  # something has come, which is left unread
+                web.send_close(1001)
+                peer.sendall(b"".join(web.data_to_send()))
+
+        thread = threading.Thread(target=leave)
+        thread.start()
+        client = BridgeClient(f"ws://127.0.0.1:{listener.getsockname()[1]}", until_good_bye=True)
+        client.connect()
+        client.advertise("/s", "std_msgs/String")
+        thread.join(timeout=PATIENCE_S)
+
+    def busy() -> None:
+        for _ in range(1000):
+            client.publish("/s", {"data": "busy"})
+
+    with pytest.raises(BridgeError, match="connection lost"):
+        busy()
