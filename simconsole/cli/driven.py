@@ -11,7 +11,6 @@ from simconsole.evaluation.report.scene_export import SCENE
 from simconsole.processes.lifetimes import INTERRUPTED
 from simconsole.profiles.link import link_label
 from simconsole.recording.bundles.bundle import open_bundle
-from simconsole.recording.bundles.manifest import read_manifest
 from simconsole.recording.bundles.pack import Sizes, pack
 from simconsole.recording.bundles.replay_bundle import recorded_session
 from simconsole.session.lifecycle import DriveResult
@@ -62,7 +61,7 @@ def _pack(result: DriveResult, results: dict[str, Any]) -> list[tuple[str, str]]
     try:
         with Progress("packing" + _patience(result)) as progress:
             sizes = pack(result.folder, progress.done)
-            for name in read_manifest(result.folder).platforms:
+            for name in result.platforms:
                 more = pack(result.folder / name, progress.done)
                 sizes = Sizes(sizes.log_bytes + more.log_bytes, sizes.packed_bytes + more.packed_bytes)
     except Exception as error:  # noqa: BLE001  as above: the log stays

@@ -65,6 +65,8 @@ class DriveResult(NamedTuple):
     summary: dict[str, Any]
     recording_failure: str | None = None
     failure: BaseException | None = None  # what a lab's own code has raised: it ended the drive
+    platforms: tuple[str, ...] = ()
+    """Folders in the bundle that hold those of the session's other platforms."""
 
 
 def drive(

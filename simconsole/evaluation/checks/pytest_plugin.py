@@ -1,7 +1,9 @@
 """Scenario files as tests of a lab's own pytest: each is driven against its bounds, its golden or its limits.
 
-The installed package brings it along (entry point pytest11). Files that the option `simconsole_scenarios` names are
-collected, by default `*.scenario.yaml`; one that is no scenario is an error, not a file that is left out.
+A lab names it in its conftest.py: `pytest_plugins = ["simconsole.evaluation.checks.pytest_plugin"]`. An entry point
+would make pytest compile every module of the package anew, to rewrite its assertions. Files that the option
+`simconsole_scenarios` names are collected, by default `*.scenario.yaml`; one that is no scenario is an error, not a
+file that is left out.
 """
 
 from collections.abc import Iterator

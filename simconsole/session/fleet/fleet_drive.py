@@ -91,6 +91,7 @@ def drive_fleet(
         interrupted=interrupt.raised,
         summary=first.summary,
         recording_failure=failures[0] if failures else None,
+        platforms=tuple(first.platforms),
     )
 
 

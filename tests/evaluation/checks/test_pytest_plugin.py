@@ -1,8 +1,7 @@
-"""The plugin in a fresh folder, as a lab has it: found by the entry point, run by a pytest of its own."""
+"""The plugin in a fresh folder, as a lab has it: named in its conftest.py, run by a pytest of its own."""
 
 import subprocess
 import sys
-from importlib.metadata import entry_points
 from pathlib import Path
 
 import pytest
@@ -32,13 +31,9 @@ def own_pytest(folder: Path, *arguments: str) -> tuple[int, str]:
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     (tmp_path / "stands.scenario.yaml").write_text(GOOD)
+    (tmp_path / "conftest.py").write_text('pytest_plugins = ["simconsole.evaluation.checks.pytest_plugin"]\n')
     (tmp_path / "other.yaml").write_text("no: scenario\n")
     return tmp_path
-
-
-def test_it_is_an_entry_point() -> None:
-    (found,) = (one for one in entry_points(group="pytest11") if one.name == "simconsole")
-    assert found.value == "simconsole.evaluation.checks.pytest_plugin"
 
 
 def test_scenarios_are_collected_accepted_and_then_passed(folder: Path) -> None:
