@@ -184,3 +184,54 @@ def test_edges_arrive() -> None:
     rises = imported(UNDERSTOOD["a distance"](), "made.xosc").profile.actors[0].acts[0]
     content = UNDERSTOOD["a distance"]().replace(b'"rising"', b'"none"')
     assert (rises.rising, imported(content, "made.xosc").profile.actors[0].acts[0].rising) == (True, False)
+
+
+def without_a_place(content: bytes, *, beside: bytes = b"") -> bytes:
+    """Return a file whose Lead is put nowhere, with another element that is not understood."""
+    place = re.compile(
+        rb'(<Private entityRef="Lead">\s*)<PrivateAction>\s*<TeleportAction>.*?</PrivateAction>', re.DOTALL
+    )
+    changed, times = place.subn(rb"\1", content)
+    assert times == 1
+    return changed.replace(b"<StopTrigger/>\n            </Act>", beside + b"<StopTrigger/>\n            </Act>")
+
+
+def third(content: bytes, acts_by: bytes) -> bytes:
+    """Return a file with one more car, to whom everything that Lead did happens by what `acts_by` does."""
+    entity = re.search(rb'<ScenarioObject name="Lead">.*?</ScenarioObject>', content, re.DOTALL)
+    begins = re.search(rb'<Private entityRef="Lead">.*?</Private>', content, re.DOTALL)
+    assert entity
+    assert begins
+    for found in (entity, begins):
+        content = content.replace(found[0], found[0] + found[0].replace(b'"Lead"', b'"Third"'))
+    actors = b'<Actors selectTriggeringEntities="false">'
+    head, tail = content.split(actors)
+    tail = tail.replace(b'entityRef="Lead"', b'entityRef="Third"', 1)
+    return head + actors + tail.replace(b'entityRef="Ego"', b'entityRef="' + acts_by + b'"')
+
+
+def test_who_has_no_place_is_listed_and_left_out_with_what_names_it() -> None:
+    whole = third(UNDERSTOOD["own speed"](), b"Lead")
+    assert [(one.name, len(one.acts)) for one in imported(whole, "made.xosc").profile.actors] == [
+        ("Lead", 0),
+        ("Third", 1),
+    ]
+    content = without_a_place(whole, beside=b"<Elsewhere/>")
+    with pytest.raises(ProfileError, match=r"<Elsewhere>: .*; line \d+: <ScenarioObject>: 'Lead': no place in <Init>"):
+        imported(content, "made.xosc")
+    found = imported(content, "made.xosc", partly=True)
+    assert [(one.name, one.acts) for one in found.profile.actors] == [("Third", ())]
+    told = [str(one) for one in found.left if one.element == "ScenarioObject"]
+    assert len(told) == 1
+    assert told[0].endswith(
+        "'Lead': no place in <Init> that is understood: left out, and 1 act of others that names it"
+    )
+    assert drive_scenario(found.profile)[0].ticks == 12 * 250
+
+
+def test_a_vehicle_without_a_place_is_listed_too() -> None:
+    content = without_a_place(
+        written().replace(b'"Ego"', b'"X"').replace(b'"Lead"', b'"Ego"').replace(b'"X"', b'"Lead"')
+    )
+    found = imported(content.replace(b"<RoadNetwork", b"<Elsewhere/><RoadNetwork"), "made.xosc", partly=True)
+    assert [one.element for one in found.left if one.changes] == ["Elsewhere", "ScenarioObject"]
