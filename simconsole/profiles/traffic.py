@@ -93,6 +93,7 @@ class Act(Trigger, frozen=True, kw_only=True, forbid_unknown_fields=True):
     to: Name | None = None  # a gap is that between the middles of these two; None: the console's vehicle
     bumper_to_bumper: bool = False  # the gap is less by half the length of each
     not_before_s: Seconds = 0.0
+    rising: bool = False  # only what is not so when it is first looked at
     speed_kmh: Kmh | None = None
     accel_mps2: Annotated[float, Meta(gt=0.0, le=100.0)] = 3.0  # with which it comes to that speed, either way
     lateral_m: Annotated[float, Meta(ge=-100.0, le=100.0)] | None = None  # left of its path

@@ -185,6 +185,19 @@ def advance_vector(previous: Row, inputs: Row | tuple[float, ...], console: Cons
     return row
 
 
+def looked_ahead(state: ConsoleState, inputs: TickInputs, console: Console) -> Snapshot:
+    """Return the coming tick as far as `decide` writes it, the driver above all; the vehicle is not stepped.
+
+    While simulated time stands, that is all anybody needs; a vehicle with a state that it does not show, an FMU, would
+    have to begin anew for each look.
+    """
+    row = np.zeros(console.width)
+    inputs_of_tick = (*inputs.sample, *inputs.ros, *inputs.events, *inputs.ecu, *inputs.ahead, *inputs.impact)
+    row[:INPUT_WIDTH] = inputs_of_tick
+    console.decide(state.vector, row, console.settings, console.tick_s)
+    return Snapshot(state.tick + 1, console.tick_hz, row)
+
+
 def advance_block(previous: Row, rows: Row, console: Console) -> None:
     """Make as many ticks as there are `rows`, in one compiled call.
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator, Sequence
 from typing import Final, NamedTuple, Protocol
 
-from simconsole.tick.advance import Console, ConsoleState, advance
+from simconsole.tick.advance import Console, ConsoleState, advance, looked_ahead
 from simconsole.tick.foresight import Foresight, first_touch
 from simconsole.values.latency import Hop, LatencyStatistics, unheard
 from simconsole.values.protocols import CommandSource, DeviceSource, NobodyCommands, Output, Seat
@@ -251,8 +251,7 @@ def _stand(
         ecu, ecu_events = components.ecu.take(coming)
         collected |= int(events.events)
         collected_ecu |= int(ecu_events.events)
-        seen = advance(state, TickInputs(sample, ros, NO_EVENTS, ecu), console)[1]  # only to read the buttons
-        pressed = int(seen.driver.pressed)
+        pressed = int(looked_ahead(state, TickInputs(sample, ros, NO_EVENTS, ecu), console).driver.pressed)
         edges, held = pressed & ~held, pressed
         if edges & _BUTTON_EMERGENCY:
             collected |= int(Event.EMERGENCY_STOP)

@@ -22,11 +22,13 @@ class Moment(NamedTuple):
 class TriggerWatch:
     """Watches for one trigger, tick by tick; once reached it stays so."""
 
-    def __init__(self, trigger: Trigger, tick_hz: int) -> None:
+    def __init__(self, trigger: Trigger, tick_hz: int, rising: bool = False) -> None:
+        """Watch for `trigger`; a `rising` one must be seen not to be so first, a time is not looked at."""
         self._trigger, self._tick_hz = trigger, tick_hz
         self._delay = round(trigger.delay_s * tick_hz)
         self._start = None if trigger.at_s is None else round(trigger.at_s * tick_hz) + self._delay
         self._was_faster = False
+        self._was = rising
 
     def turn(self, tick: int, before: Snapshot, seen: Moment | None = None) -> int | None:
         """Return the tick at which it begins, None where that is not known yet.
@@ -36,8 +38,11 @@ class TriggerWatch:
             before: the tick before it.
             seen: whom it looks at; the console's vehicle, if it is left out.
         """
-        if self._start is None and self._reached(before, own_moment(before) if seen is None else seen):
-            self._start = tick + self._delay
+        if self._start is None:
+            reached = self._reached(before, own_moment(before) if seen is None else seen)
+            self._was = self._was and reached
+            if reached and not self._was:
+                self._start = tick + self._delay
         return self._start
 
     def _reached(self, before: Snapshot, seen: Moment) -> bool:

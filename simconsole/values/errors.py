@@ -14,6 +14,7 @@
     |       +-- FrameError      below its messages: answered with a close code
     +-- CanError                the CAN bus, a DBC or a frame
     +-- RecordingError          a bundle or log that cannot be read
+    +-- VehicleError            a vehicle of another package fails in a drive
     +-- WorkerError            a consumer process or its shared memory
 
 The command line prints the message on one line and exits with `exit_code`; a traceback means a bug.
@@ -83,6 +84,10 @@ class CanError(SimConsoleError):
 
 class RecordingError(SimConsoleError):
     """A bundle or log is missing, truncated before its first tick, altered or of another version."""
+
+
+class VehicleError(SimConsoleError):
+    """A vehicle of another package, an FMU, fails in a drive. Names the file and the simulated time."""
 
 
 class WorkerError(SimConsoleError):

@@ -18,6 +18,8 @@ from simconsole.tick.advance import Console, advance_vector
 from simconsole.tick.assembly import assemble
 from simconsole.tick.loop import Components, run
 from simconsole.values.host.jit import compiled
+from simconsole.values.kernels import Row
+from simconsole.values.platform import Step
 from simconsole.values.protocols import NobodySeated
 from simconsole.values.signals import (
     NO_COMMAND,
@@ -73,11 +75,16 @@ class Driven:
 @pytest.fixture(scope="module")
 def go() -> Callable[..., Driven]:
     resolved = resolve(parse(SESSION, SessionProfile, "session"))
-    console, state = assemble(resolved, compiled)
+    assembled, state = assemble(resolved, compiled)
 
     def drive(
-        plan: dict[tuple[int, int], Event], points: str = "", seconds: float = 8.0, on_request: bool = False
+        plan: dict[tuple[int, int], Event],
+        points: str = "",
+        seconds: float = 8.0,
+        on_request: bool = False,
+        step: Step | None = None,
     ) -> Driven:
+        console = assembled if step is None else assembled._replace(step=step)
         script = parse(f"points:\n  - {REST}\n{points}", ScriptProfile, "script")
         devices = ScriptSource(script, cockpit_settings(resolved.cockpit, HZ), tick_hz=HZ)
         recorder, operator = MemoryRecorder(round(seconds * HZ), console.width), Operator(plan)
@@ -102,6 +109,20 @@ def test_paused_time_stands_and_nothing_grows_old(go: Callable[..., Driven]) -> 
     rest = [name for name in plain.console.columns if not name.startswith(("events.", "torque.", "motor."))]
     unlike = [name for name in rest if not np.array_equal(paused.column(name), plain.column(name))]
     assert not unlike, "as if there had been no pause"
+    assert paused.replayed()
+
+
+def test_the_vehicle_is_stepped_once_a_tick_however_long_time_stands(go: Callable[..., Driven]) -> None:
+    """One with a state that it does not show, an FMU, would have to begin anew for each look."""
+    own, stepped = go({}, seconds=0.1).console.step, []
+
+    def step(previous: Row, row: Row, parameters: Row, ground: Row, substeps: int) -> None:
+        stepped.append(substeps)
+        own(previous, row, parameters, ground, substeps)
+
+    paused = go({(5, 1): Event.PAUSE, (6, 400): Event.START}, seconds=0.2, step=step)
+    assert paused.looks[6] == 401
+    assert len(stepped) == len(paused.vectors) == 50
     assert paused.replayed()
 
 

@@ -61,6 +61,14 @@ def test_a_speed_is_not_fallen_below_before_it_was_driven() -> None:
     assert watch.turn(4, snapshot(3), FREE) == 4
 
 
+def test_what_must_rise_is_seen_not_to_be_so_first() -> None:
+    fast, slow = FREE._replace(speed_mps=6.0), FREE._replace(speed_mps=4.0)
+    watch = TriggerWatch(Trigger(above_mps=5.0), TICK_HZ, rising=True)
+    looks = [watch.turn(tick, snapshot(tick - 1), seen) for tick, seen in enumerate([fast, fast, slow, fast, slow], 1)]
+    assert looks == [None, None, None, 4, 4]
+    assert TriggerWatch(Trigger(above_mps=5.0), TICK_HZ).turn(1, snapshot(0), fast) == 1
+
+
 def test_times_are_known_before_they_come_and_delays_are_added() -> None:
     assert TriggerWatch(Trigger(at_s=0.5, delay_s=0.1), TICK_HZ).turn(1, snapshot(0)) == 60
     assert TriggerWatch(Trigger(above_mps=0.0, delay_s=0.1), TICK_HZ).turn(7, snapshot(6, vehicle__vx_mps=-1.0)) == 17

@@ -100,6 +100,10 @@ class Comparison:
     """Compares a drive with its golden, sample by sample: the columns that both have.
 
     Equal is what has equal bits, or is as near as the column's tolerance allows.
+
+    Attributes:
+        compared: samples of both.
+        unaccepted: the first tick that was driven and has no sample in the golden; None: there is none.
     """
 
     def __init__(self, accepted: Golden, columns: tuple[str, ...], tolerances: Sequence[Tolerance] = ()) -> None:
@@ -110,6 +114,8 @@ class Comparison:
         self._old, self._now = shared, [columns.index(accepted.columns[at]) for at in shared]
         self._absolute, self._relative = absolute[shared], relative[shared]
         self._columns = accepted.columns
+        self.compared = 0
+        self.unaccepted: int | None = None
         self._driven = 0
         self._missing: int | None = None  # the first accepted tick that was not driven, before any other difference
         self._found: dict[int, ColumnDifference] = {}
@@ -120,7 +126,9 @@ class Comparison:
         while self._next is not None and self._next[0] < tick:
             self._skip(self._next[0])
         if self._next is None or self._next[0] != tick:
+            self.unaccepted = self.unaccepted or tick
             return
+        self.compared += 1
         old = np.array(self._next[1])[self._old]
         self._next = next(self._samples, None)
         new = np.asarray(row)[self._now]

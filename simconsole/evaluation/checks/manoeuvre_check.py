@@ -17,6 +17,7 @@ from simconsole.profiles.scenario import ScenarioProfile
 from simconsole.recording.framing import START_OF_CHAIN
 from simconsole.session.pacing import UnpacedPacer
 from simconsole.session.resolution import resolve
+from simconsole.session.scripted.opening import check_alone
 from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession, assemble
 from simconsole.tick.loop import Components, run
@@ -37,9 +38,11 @@ def drive(scenario: ScenarioProfile, manoeuvre: Manoeuvre, resolved: ResolvedSes
     """Drive every attempt of a manoeuvre and evaluate it; `resolved` takes the place of the scenario's own session.
 
     Raises:
-        ProfileError: a profile that the scenario names is missing or wrong; it watches a script but has none.
+        ProfileError: a profile that the scenario names is missing or wrong, its session has several platforms, or it
+            watches a script but has none.
     """
     resolved = resolve(scenario.session) if resolved is None else resolved
+    check_alone(scenario, resolved)
     console, _ = assemble(resolved, compiled)
     at_work = drive_manoeuvre(manoeuvre, console.platform, scenario.duration_s)
     ticks, digest = 0, START_OF_CHAIN

@@ -63,9 +63,11 @@ class Comparing:
             ProfileError: it is no golden of this version.
         """
         if self._path.is_file():
-            self._file = self._path.open(encoding="utf-8", newline="")
-            self._golden = golden.Golden(self._file, str(self._path))
-            self._comparison = golden.Comparison(self._golden, self._columns, self._tolerances)
+            with ExitStack() as opening:
+                self._file = opening.enter_context(self._path.open(encoding="utf-8", newline=""))
+                self._golden = golden.Golden(self._file, str(self._path))
+                self._comparison = golden.Comparison(self._golden, self._columns, self._tolerances)
+                opening.pop_all()
         return self
 
     def __exit__(self, *error: Any) -> None:
@@ -81,17 +83,29 @@ class Comparing:
     def end(self, digest: str) -> list[str]:
         """Return how the finished drive differs from the golden, one line or none."""
         if self._file is None:
-            return [f"{self._path}: no golden; accept one with --update-golden"]
+            return [f"{self._path}: no golden; accept one with --update-golden (of pytest: --simconsole-update-golden)"]
+        if self._golden.tick_hz != self._tick_hz:
+            return [f"{self._path}: tick_hz {self._tick_hz}, accepted {self._golden.tick_hz}"]
         difference = self._comparison.first_difference()
         if (self._golden.hash, self._golden.columns) == (digest, self._columns):
             return []
         if difference is None:
-            gone = [name for name in self._golden.columns if name not in self._columns]
-            if self._tolerances and not gone:
-                return []
-            return [f"{self._path}: hash {digest}, accepted {self._golden.hash}; no sampled value differs"]
+            return self._unseen(digest)
         first = (
             f"{self._path}: tick {difference.tick}: {difference.column}: "
             f"driven {difference.driven!r}, accepted {difference.accepted!r}"
         )
         return [first, *golden.readable(self._comparison.differences(), self._tick_hz)]
+
+    def _unseen(self, digest: str) -> list[str]:
+        """Return what is wrong with a drive of another hash where all samples of both are alike."""
+        gone = [name for name in self._golden.columns if name not in self._columns]
+        if not self._tolerances or gone:
+            return [f"{self._path}: hash {digest}, accepted {self._golden.hash}; no sampled value differs"]
+        if self._comparison.unaccepted is not None:
+            return [f"{self._path}: tick {self._comparison.unaccepted}: driven, and no sample of it was accepted"]
+        if not self._comparison.compared:
+            return [
+                f"{self._path}: hash {digest}, accepted {self._golden.hash}; no sample to hold the tolerances against"
+            ]
+        return []

@@ -119,7 +119,7 @@ def drive_scenario(
     """Drive a scenario without a bundle into the recorder that `recorder_of` makes, and return that.
 
     `resolved` takes the place of the scenario's own session: the same with other values. `told` hears what the console
-    refused of the scenario's own messages.
+    refused of the scenario's own messages, and that simulated time stood for ever.
 
     Raises:
         SimConsoleError: the session cannot be opened, or the scenario's inputs do not fit together.
@@ -129,7 +129,8 @@ def drive_scenario(
     recorder = recorder_of(console)
     with ExitStack() as stack:
         opened = open_scenario(scenario, resolved, console, recorder, stack)
-        run(console, state, opened.components, round(scenario.duration_s * console.tick_hz), opened.finished)
+        ticks, asked = round(scenario.duration_s * console.tick_hz), resolved.session.mode.start == "on_request"
+        run(console, state, opened.components, ticks, opened.finished, on_request=asked)
         problem = opened.problem()
     if problem is not None:
         told(problem)

@@ -113,15 +113,7 @@ def _ego(source: Source, element: Element, known: dict[str, Entity], wanted: str
 def _scenario(
     source: Source, parts: dict[str, Element], known: dict[str, Entity], driven: str, told: Told, vehicle: str
 ) -> dict[str, Any]:
-    actors = []
-    for name, entity in known.items():
-        beginning = told.beginnings.get(name)
-        if beginning is None or beginning.place is None:
-            if not any(one.changes for one in source.left):
-                raise source.error(parts["Storyboard"], f"entity {name!a}: a <TeleportAction> in <Init>")
-            continue  # its place was not understood, and is listed
-        if name != driven:
-            actors.append({**actor(entity, beginning.place, beginning.speed_mps), "acts": told.acts[name]})
+    actors = _actors(source, parts, known, driven, told)
     own = told.beginnings.get(driven)
     speed_mps = 0.0 if own is None else own.speed_mps
     duration_s = told.end_s or DURATION_S
@@ -147,3 +139,37 @@ def _scenario(
     if actors:
         plain["actors"] = actors
     return plain
+
+
+def _actors(
+    source: Source, parts: dict[str, Element], known: dict[str, Entity], driven: str, told: Told
+) -> list[dict[str, Any]]:
+    """Return everybody but the console's vehicle; who has no place is listed, and left out with all that names it."""
+    places = {name: one.place for name, one in told.beginnings.items() if one.place is not None and name in known}
+    lost = {entity.label for name, entity in known.items() if name not in places and name != driven}
+    actors, named = [], dict.fromkeys(lost, 0)
+    understood = not any(one.changes for one in source.left)
+    for name, entity in known.items():
+        if name == driven or name not in places:
+            continue
+        acts = []
+        for act in told.acts[name]:
+            gone = lost & {act.get("of"), act.get("to")}
+            for label in gone:
+                named[label] += 1
+            if not gone:
+                acts.append(act)
+        actors.append({**actor(entity, places[name], told.beginnings[name].speed_mps), "acts": acts})
+    for element in parts["Entities"].children:
+        one = known.get(element.attributes.get("name", ""))
+        if one is None or one.name in places:
+            continue
+        if understood:
+            raise source.error(parts["Storyboard"], f"entity {one.name!a}: a <TeleportAction> in <Init>")
+        why = f"{one.name!a}: no place in <Init> that is understood: left out"
+        if one.name == driven:
+            why = why.replace("left out", "it begins where every vehicle does")
+        elif number := named[one.label]:
+            why += f", and {number} act{'s' * (number > 1)} of others that name{'s' * (number == 1)} it"
+        source.refuse(element, why)
+    return actors

@@ -10,6 +10,8 @@ from simconsole.evaluation.openscenario.triggers import Names, conditions, only_
 from simconsole.world.sumo.xml_guard import Element
 
 _ONCE: Final = 1.0
+_PRIORITIES: Final = {"override": "replaces", "overwrite": "replaces", "skip": "", "parallel": ""}
+"""Whether an event replaces those of its maneuver that run; so do our acts."""
 
 
 class Beginning(NamedTuple):
@@ -124,7 +126,11 @@ def _events(source: Source, element: Element, ego: str, known: Mapping[str, Enti
                 else:
                     actors.append(name)
             continue
-        for event in source.children(child, "Event"):
+        events = list(source.children(child, "Event"))
+        for event in events:
+            if not source.choice(event, "priority", _PRIORITIES, "override") and len(events) > 1:
+                source.refuse(event, "not understood: priority override, of several events")
+                continue
             yield from ((name, event) for name in actors)
 
 

@@ -9,7 +9,7 @@ from simconsole.world.sumo.xml_guard import Element
 
 _MORE: Final = {"greaterThan": "more", "greaterOrEqual": "more"}
 _LESS: Final = {"lessThan": "less", "lessOrEqual": "less"}
-_EDGES: Final = {"rising": "rising", "none": "none"}
+_EDGES: Final = {"rising": "rising", "none": "none", "falling": "", "risingOrFalling": ""}
 DAY_S: Final = 86_400.0
 
 
@@ -49,9 +49,9 @@ def conditions(source: Source, element: Element | None, names: Names) -> dict[st
     group = source.only(element, "ConditionGroup")
     before_s, found = 0.0, []
     for condition in source.children(group, "Condition"):
-        source.choice(condition, "conditionEdge", _EDGES, "none")
         delay_s = source.number(condition, "delay", 0.0, DAY_S, 0.0)
         one = _condition(source, condition, names)
+        one = None if one is None else _with_edge(source, condition, one, len(group.children) == 1)
         if one is None:
             return None
         if "at_s" in one and len(group.children) > 1:
@@ -64,6 +64,27 @@ def conditions(source: Source, element: Element | None, names: Names) -> dict[st
     if not found:
         return {"at_s": before_s}
     return {**found[0], "not_before_s": before_s} if before_s else found[0]
+
+
+def _with_edge(source: Source, element: Element, found: dict[str, Any], alone: bool) -> dict[str, Any] | None:
+    """Return a condition with its edge; None: an edge that its trigger has not, and noted.
+
+    A time rises once. A speed below a limit has risen. All others are or are not, and rise if asked to.
+    """
+    edge = source.choice(element, "conditionEdge", _EDGES, "none")
+    if not edge:
+        source.refuse(element, "not understood: conditionEdge rising or none")
+    elif "at_s" in found:
+        if edge == "none" or alone:
+            return found
+        source.refuse(element, "not understood: conditionEdge none, of a time beside another condition")
+    elif "below_mps" in found:
+        if edge == "rising":
+            return found
+        source.refuse(element, "not understood: conditionEdge rising, of a speed below a limit")
+    else:
+        return {**found, "rising": True} if edge == "rising" else found
+    return None
 
 
 def only_time(source: Source, element: Element | None, names: Names) -> float | None:

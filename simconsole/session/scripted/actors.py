@@ -53,7 +53,7 @@ class ScriptedActors:
                 raise ProfileError(f"{origin}: actors: name: value {profile.name}: another name for each")
             self._actors[profile.name] = _placed(number, profile, ego, route, origin)
         self._waiting = [
-            _Waiting(actor, act, TriggerWatch(act, tick_hz))
+            _Waiting(actor, act, TriggerWatch(act, tick_hz, rising=act.rising))
             for actor in self._actors.values()
             for act in actor.profile.acts
         ]

@@ -15,6 +15,28 @@ STANDS_AT_MOST: Final = 100
 """So often simulated time is waited for that stands: then nobody of the scenario starts it."""
 
 
+class Standing:
+    """Counts how often simulated time that stands was waited for."""
+
+    def __init__(self) -> None:
+        self._tick, self._stood = 0, 0
+
+    def stand(self, snapshot: Snapshot) -> None:
+        """Wait once more; called again and again while simulated time stands."""
+        self._stood = self._stood + 1 if snapshot.tick == self._tick else 1
+        self._tick = snapshot.tick
+
+    def ends(self, snapshot: Snapshot) -> bool:
+        """Return whether simulated time stands and nobody of the scenario will start it."""
+        return self._stood > STANDS_AT_MOST and snapshot.tick == self._tick
+
+    def problem(self) -> str | None:
+        """Return that it stood for ever, and since when."""
+        if self._stood <= STANDS_AT_MOST:
+            return None
+        return f"tick {self._tick}: simulated time stands after it and nobody starts it"
+
+
 class TriggeredEvents:
     """A controller's commands, and the scenario's edges with them: an output that sees what triggers them."""
 
@@ -23,20 +45,10 @@ class TriggeredEvents:
         self._waiting = [(int(Event[step.event.upper()]), TriggerWatch(step, tick_hz)) for step in events]
         self._commands = commands
         self._raised = 0
-        self._stood = 0
 
     def publish(self, snapshot: Snapshot) -> None:
         """Look at a tick for what triggers an edge in the one after it."""
-        self._stood = 0
         self._look(snapshot)
-
-    def stand(self, snapshot: Snapshot) -> None:
-        """Count how often simulated time has been waited for."""
-        self._stood += 1
-
-    def finished(self, snapshot: Snapshot) -> bool:
-        """Return whether simulated time stands and nobody will start it."""
-        return self._stood > STANDS_AT_MOST
 
     def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
         """Return the newest command, and this tick's edges."""

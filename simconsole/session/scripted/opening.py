@@ -20,7 +20,7 @@ from simconsole.session.headless import open_headless
 from simconsole.session.recorder import NoLog
 from simconsole.session.resolution import headless
 from simconsole.session.scripted.actors import ScriptedActors
-from simconsole.session.scripted.events import ScriptedMessages, TriggeredEvents, check_messages
+from simconsole.session.scripted.events import ScriptedMessages, Standing, TriggeredEvents, check_messages
 from simconsole.session.traffic_source import TrafficSource, ego_box
 from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession
@@ -71,8 +71,9 @@ def as_driven(scenario: ScenarioProfile, resolved: ResolvedSession) -> ResolvedS
     """Return the scenario's session as it is opened: headless, and with nobody where its script drives.
 
     Raises:
-        ProfileError: it has both a script and another driver, or both traffic and actors.
+        ProfileError: it has both a script and another driver, both traffic and actors, or several platforms.
     """
+    check_alone(scenario, resolved)
     session = headless(resolved.session)
     driver = session.devices.driver
     if scenario.script is not None and driver not in ("none", *_BY_HAND):
@@ -87,13 +88,23 @@ def as_driven(scenario: ScenarioProfile, resolved: ResolvedSession) -> ResolvedS
     return msgspec.structs.replace(resolved, session=session)
 
 
+def check_alone(scenario: ScenarioProfile, resolved: ResolvedSession) -> None:
+    """Refuse a session of several platforms.
+
+    Raises:
+        ProfileError: it has some.
+    """
+    if resolved.session.scenario.platforms:
+        raise ProfileError(f"{scenario.title}: session.scenario.platforms: value given: a scenario drives one vehicle")
+
+
 class _Script:
     """The scenario's own inputs, put into the parts of a drive."""
 
     def __init__(self, scenario: ScenarioProfile, resolved: ResolvedSession, console: Console) -> None:
         self.resolved = resolved
         self._scenario, self._console = scenario, console
-        self._events: TriggeredEvents | None = None
+        self._standing = Standing()
         self._messages: ScriptedMessages | None = None
         self._actors: ScriptedActors | None = None
         self.others: TrafficSource | None = None
@@ -113,19 +124,18 @@ class _Script:
         commands, seen = self._commands(parts.commands)
         first: tuple[Output, ...] = () if self._actors is None else (self._actors,)  # acts begin before it is stepped
         outputs = (*first, *outputs, *seen)
-        standby = parts.standby
-        if self._events is not None:
-            live = self.resolved.session.mode.pacing == "lockstep"  # its sockets are served meanwhile
-            standby = (*(standby if live else ()), self._events.stand)
+        live = self.resolved.session.mode.pacing == "lockstep"  # its sockets are served meanwhile
+        standby = (*(parts.standby if live else ()), self._standing.stand)
         return parts._replace(devices=devices, commands=commands, ecu=ecu, outputs=outputs, standby=standby)
 
     def stands(self, snapshot: Snapshot) -> bool:
         """Return whether simulated time stands for ever."""
-        return self._events is not None and self._events.finished(snapshot)
+        return self._standing.ends(snapshot)
 
     def problem(self) -> str | None:
-        """Return what the console refused of the scenario's messages."""
-        return None if self._messages is None else self._messages.refused
+        """Return what the console refused of the scenario's messages, or that simulated time stood for ever."""
+        refused = None if self._messages is None else self._messages.refused
+        return refused or self._standing.problem()
 
     def _commands(self, others: CommandSource) -> tuple[CommandSource, tuple[Output, ...]]:
         """Return where commands and edges come from, and what must see each tick for it."""
@@ -142,8 +152,8 @@ class _Script:
                 return others, ()
         if not scenario.events:
             return others, seen
-        self._events = TriggeredEvents(scenario.events, others, tick_hz)
-        return self._events, (*seen, self._events)
+        events = TriggeredEvents(scenario.events, others, tick_hz)
+        return events, (*seen, events)
 
     def _road_users(self) -> tuple[ScriptedActors, TrafficSource]:
         platform, tick_hz = self._console.platform, self._console.tick_hz

@@ -51,12 +51,16 @@ class FmuStep:
         )
         self._start, self._pose = start, pose
         self._told: list[tuple[int, tuple[float, ...]]] = []  # substeps and inputs of each tick
-        self._steps = 0
+        self._steps = 0  # -1: it has failed and must begin anew
         self.initial = self._begin()
         self.digest = hashlib.sha256(profile.file_sha256.encode()).hexdigest()
 
     def __call__(self, previous: Row, vector: Row, parameters: Row, ground: Row, substeps: int) -> None:
-        """Make one tick, as `Platform.step` does."""
+        """Make one tick, as `Platform.step` does.
+
+        Raises:
+            VehicleError: the unit fails, or has no finite number for an output.
+        """
         before, command = read(previous, _STATE), read(vector, LAYOUT.command)
         if int(before.steps) != self._steps:
             self._go_back(int(before.steps))
@@ -73,13 +77,16 @@ class FmuStep:
 
     def _begin(self) -> dict[str, float]:
         self._told.clear()
+        self._steps = -1
+        found = self._unit.begin(self._start)
         self._steps = 0
-        return dict(zip(self._outputs, self._unit.begin(self._start), strict=True))
+        return dict(zip(self._outputs, found, strict=True))
 
     def _advance(self, substeps: int, inputs: tuple[float, ...]) -> dict[str, float]:
-        found = self._unit.step(self._steps * STEP_S, substeps * STEP_S, inputs)
+        at, self._steps = self._steps, -1
+        found = self._unit.step(at * STEP_S, substeps * STEP_S, inputs)
         self._told.append((substeps, inputs))
-        self._steps += substeps
+        self._steps = at + substeps
         return dict(zip(self._outputs, found, strict=True))
 
     def _go_back(self, steps: int) -> None:

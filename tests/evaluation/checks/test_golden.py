@@ -66,6 +66,14 @@ def test_a_shorter_drive_differs() -> None:
     assert difference(text(ticks=TICKS[:-1]), ROWS) is None, "as far as it was accepted; the hash tells"
 
 
+def test_what_was_driven_and_never_accepted_is_told() -> None:
+    longer = Comparison(read(text(ticks=TICKS[:-1])), COLUMNS)
+    for tick in TICKS:
+        longer.see(tick, ROWS[tick - 1])
+    assert (longer.first_difference(), longer.compared, longer.unaccepted) == (None, 4, 10)
+    assert compared(ROWS).unaccepted is None
+
+
 @pytest.mark.parametrize("written", ["", "tick,a\n1,2\n", "# simconsole golden schema 9 tick_hz 10 hash 0\ntick,a\n"])
 def test_other_files_are_refused_by_name(written: str) -> None:
     with pytest.raises(ProfileError, match=r"x\.csv: line 1"):

@@ -5,11 +5,12 @@ import re
 from typing import Final
 
 import pytest
+from scenariogeneration import xosc
 
 from simconsole.evaluation.openscenario.importing import imported
 from simconsole.values.errors import ProfileError
 from tests.evaluation.in_memory import drive_scenario
-from tests.evaluation.openscenario.files import NOT_UNDERSTOOD, UNDERSTOOD, all_files, written
+from tests.evaluation.openscenario.files import NOT_UNDERSTOOD, UNDERSTOOD, all_files, brakes, by, written
 
 MUTATIONS: Final = 300
 WORDS: Final = ("", "nan", "inf", "-1e9", "1e300", "zwölf", "$speed", "$no", "${1+1}", "true", "0", "\x7f", "9" * 400)
@@ -143,3 +144,94 @@ def test_the_consoles_vehicle_is_named_or_asked_for() -> None:
     with pytest.raises(ProfileError, match="<Entities>: 0 entities called ego or hero"):
         imported(content, "made.xosc")
     assert [actor.name for actor in imported(content, "made.xosc", ego="Mine").profile.actors] == ["Lead"]
+
+
+@pytest.mark.parametrize("priority", ["skip", "parallel", "override"])
+def test_a_priority_that_nobody_keeps_to_is_refused(priority: str) -> None:
+    """One event alone has nobody to skip; of several, each act replaces the one before."""
+    alone = written(brakes()).replace(b'priority="override"', f'priority="{priority}"'.encode())
+    assert len(imported(alone, "made.xosc").profile.actors[0].acts) == 1
+    several = written(brakes(), events=2).replace(b'priority="override"', f'priority="{priority}"'.encode())
+    if priority == "override":
+        assert len(imported(several, "made.xosc").profile.actors[0].acts) == 2
+        return
+    with pytest.raises(ProfileError, match="<Event>: not understood: priority override, of several events"):
+        imported(several, "made.xosc")
+    assert imported(several, "made.xosc", partly=True).profile.actors[0].acts == ()
+
+
+@pytest.mark.parametrize(
+    ("name", "edge", "told"),
+    [
+        ("own speed", "falling", "conditionEdge rising or none"),
+        ("own speed", "risingOrFalling", "conditionEdge rising or none"),
+        ("a speed below", "none", "conditionEdge rising, of a speed below a limit"),
+        ("a condition and a time", "rising", "conditionEdge none, of a time beside another condition"),
+    ],
+)
+def test_an_edge_that_no_trigger_has_is_refused(name: str, edge: str, told: str) -> None:
+    slow = xosc.SpeedCondition(5, xosc.Rule.lessThan)
+    content = written(brakes(), by(slow)) if name == "a speed below" else UNDERSTOOD[name]()
+    before = b"none" if name == "a condition and a time" else b"rising"
+    assert imported(content, "made.xosc").profile.actors[0].acts
+    content = content.replace(b'conditionEdge="' + before, f'conditionEdge="{edge}'.encode())
+    with pytest.raises(ProfileError, match=f"<Condition>: not understood: {told}"):
+        imported(content, "made.xosc")
+    assert imported(content, "made.xosc", partly=True).profile.actors[0].acts == ()
+
+
+def test_edges_arrive() -> None:
+    rises = imported(UNDERSTOOD["a distance"](), "made.xosc").profile.actors[0].acts[0]
+    content = UNDERSTOOD["a distance"]().replace(b'"rising"', b'"none"')
+    assert (rises.rising, imported(content, "made.xosc").profile.actors[0].acts[0].rising) == (True, False)
+
+
+def without_a_place(content: bytes, *, beside: bytes = b"") -> bytes:
+    """Return a file whose Lead is put nowhere, with another element that is not understood."""
+    place = re.compile(
+        rb'(<Private entityRef="Lead">\s*)<PrivateAction>\s*<TeleportAction>.*?</PrivateAction>', re.DOTALL
+    )
+    changed, times = place.subn(rb"\1", content)
+    assert times == 1
+    return changed.replace(b"<StopTrigger/>\n            </Act>", beside + b"<StopTrigger/>\n            </Act>")
+
+
+def third(content: bytes, acts_by: bytes) -> bytes:
+    """Return a file with one more car, to whom everything that Lead did happens by what `acts_by` does."""
+    entity = re.search(rb'<ScenarioObject name="Lead">.*?</ScenarioObject>', content, re.DOTALL)
+    begins = re.search(rb'<Private entityRef="Lead">.*?</Private>', content, re.DOTALL)
+    assert entity
+    assert begins
+    for found in (entity, begins):
+        content = content.replace(found[0], found[0] + found[0].replace(b'"Lead"', b'"Third"'))
+    actors = b'<Actors selectTriggeringEntities="false">'
+    head, tail = content.split(actors)
+    tail = tail.replace(b'entityRef="Lead"', b'entityRef="Third"', 1)
+    return head + actors + tail.replace(b'entityRef="Ego"', b'entityRef="' + acts_by + b'"')
+
+
+def test_who_has_no_place_is_listed_and_left_out_with_what_names_it() -> None:
+    whole = third(UNDERSTOOD["own speed"](), b"Lead")
+    assert [(one.name, len(one.acts)) for one in imported(whole, "made.xosc").profile.actors] == [
+        ("Lead", 0),
+        ("Third", 1),
+    ]
+    content = without_a_place(whole, beside=b"<Elsewhere/>")
+    with pytest.raises(ProfileError, match=r"<Elsewhere>: .*; line \d+: <ScenarioObject>: 'Lead': no place in <Init>"):
+        imported(content, "made.xosc")
+    found = imported(content, "made.xosc", partly=True)
+    assert [(one.name, one.acts) for one in found.profile.actors] == [("Third", ())]
+    told = [str(one) for one in found.left if one.element == "ScenarioObject"]
+    assert len(told) == 1
+    assert told[0].endswith(
+        "'Lead': no place in <Init> that is understood: left out, and 1 act of others that names it"
+    )
+    assert drive_scenario(found.profile)[0].ticks == 12 * 250
+
+
+def test_a_vehicle_without_a_place_is_listed_too() -> None:
+    content = without_a_place(
+        written().replace(b'"Ego"', b'"X"').replace(b'"Lead"', b'"Ego"').replace(b'"X"', b'"Lead"')
+    )
+    found = imported(content.replace(b"<RoadNetwork", b"<Elsewhere/><RoadNetwork"), "made.xosc", partly=True)
+    assert [one.element for one in found.left if one.changes] == ["Elsewhere", "ScenarioObject"]

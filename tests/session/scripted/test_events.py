@@ -51,7 +51,33 @@ def test_time_stands_until_the_scenario_starts_it() -> None:
     assert drive.ticks_of(Event.PAUSE) == [500]
     assert drive.ticks_of(Event.START) == [501]
     assert len(drive.rows) == 2000
-    assert len(driven(f"{ENGAGED}events:\n{ASKS}{edges}").rows) == 500, "nobody starts it: the drive ends"
+    assert drive.problems == []
+    ended = driven(f"{ENGAGED}events:\n{ASKS}{edges}")
+    assert len(ended.rows) == 500, "nobody starts it: the drive ends"
+    assert ended.problems == ["tick 500: simulated time stands after it and nobody starts it"]
+
+
+@pytest.mark.parametrize(
+    "pauses",
+    [
+        "messages: [{at_s: 1.0, topic: /console/request, message: {data: pause}}]\n",
+        "script: {points: [{time_s: 0, throttle: 0, brake: 0, clutch: 0, hand_wheel_deg: 0, gear: 0},"
+        " {time_s: 1, press: [pause]}]}\n",
+    ],
+    ids=["message", "button"],
+)
+def test_a_pause_without_an_event_ends_the_drive_too(pauses: str) -> None:
+    drive = driven(pauses, seconds=3)
+    assert 249 <= len(drive.rows) <= 253
+    assert drive.problems == [f"tick {len(drive.rows)}: simulated time stands after it and nobody starts it"]
+
+
+def test_a_session_that_waits_for_its_start_is_started_by_an_event() -> None:
+    waits = "  mode: {start: on_request}\n"
+    drive = driven(f"{waits}events: [{{event: start, on_event: pause}}]\n", seconds=1)
+    assert (drive.ticks_of(Event.PAUSE), drive.ticks_of(Event.START)) == ([1], [2])
+    assert (len(drive.rows), drive.problems) == (250, [])
+    assert len(driven(waits, seconds=1).rows) == 1
 
 
 def test_messages_go_through_the_consoles_decoder() -> None:

@@ -79,3 +79,11 @@ def test_two_drivers_are_refused(tmp_path: Path) -> None:
     (tmp_path / "s.yaml").write_text(LIVE + "remote: [{start_s: 0, end_s: 1, kind: speed}]\n")
     with pytest.raises(ProfileError, match="remote: without a session in lockstep"):
         check_scenario(str(tmp_path / "s.yaml"))
+
+
+def test_several_platforms_are_refused(tmp_path: Path) -> None:
+    """One of three robots was driven before, and nobody said so."""
+    path = tmp_path / "s.yaml"
+    path.write_text(PERSON.replace("vehicle: hatchback}", "vehicle: hatchback, platforms: [{name: a}, {name: b}]}"))
+    with pytest.raises(ProfileError, match=r"session\.scenario\.platforms: value given: a scenario drives one vehicle"):
+        check_scenario(str(path))

@@ -31,6 +31,13 @@ static void step(Car *c, double dt) {
     }
     out(c);
 }
+/* What it is asked for and cannot do: to begin backwards, and to brake twice as hard as it can. Beyond that it has no
+   number for its speed. */
+static int begun(const Car *c) { return c->v[V0] < 0.0 ? 3 : 0; }
+static int stepped(Car *c) {
+    if (c->v[BRAKE] > 3.0) c->v[V] = 0.0 / 0.0;
+    return c->v[BRAKE] == 2.0 ? 3 : 0;
+}
 #define API __attribute__((visibility("default")))
 #ifndef FMI3
 API const char *fmi2GetTypesPlatform(void) { return "default"; }
@@ -42,7 +49,7 @@ API void *fmi2Instantiate(const char *n, int t, const char *g, const char *r, co
 API void fmi2FreeInstance(void *c) { free(c); }
 API int fmi2SetupExperiment(void *c, int a, double t, double s, int b, double e) { return 0; }
 API int fmi2EnterInitializationMode(void *c) { return 0; }
-API int fmi2ExitInitializationMode(void *c) { start(c); return 0; }
+API int fmi2ExitInitializationMode(void *c) { start(c); return begun(c); }
 API int fmi2Terminate(void *c) { return 0; }
 API int fmi2Reset(void *c) { clear(c); return 0; }
 API int fmi2GetReal(void *c, const unsigned *r, size_t n, double *v) {
@@ -53,7 +60,7 @@ API int fmi2SetReal(void *c, const unsigned *r, size_t n, const double *v) {
     for (size_t k = 0; k < n; k++) ((Car *)c)->v[r[k]] = v[k];
     return 0;
 }
-API int fmi2DoStep(void *c, double t, double dt, int p) { step(c, dt); return 0; }
+API int fmi2DoStep(void *c, double t, double dt, int p) { step(c, dt); return stepped(c); }
 /* What nobody calls must be there all the same. */
 #define NONE(name) API int fmi2##name(void) { return 3; }
 NONE(GetInteger) NONE(GetBoolean) NONE(GetString) NONE(SetInteger) NONE(SetBoolean) NONE(SetString)
@@ -90,7 +97,7 @@ API void *fmi3InstantiateCoSimulation(const char *n, const char *g, const char *
 }
 API void fmi3FreeInstance(void *c) { free(c); }
 API int fmi3EnterInitializationMode(void *c, bool a, double t, double s, bool b, double e) { return 0; }
-API int fmi3ExitInitializationMode(void *c) { start(c); return 0; }
+API int fmi3ExitInitializationMode(void *c) { start(c); return begun(c); }
 API int fmi3Terminate(void *c) { return 0; }
 API int fmi3Reset(void *c) { clear(c); return 0; }
 API int fmi3GetFloat64(void *c, const unsigned *r, size_t n, double *v, size_t m) {
@@ -105,6 +112,6 @@ API int fmi3DoStep(void *c, double t, double dt, bool p, bool *e, bool *x, bool 
     *e = *x = *y = false;
     *last = t + dt;
     step(c, dt);
-    return 0;
+    return stepped(c);
 }
 #endif

@@ -9,7 +9,7 @@ import pytest
 import simconsole
 from simconsole.profiles.files.vehicle_files import load_vehicle
 from simconsole.profiles.vehicle import OwnProfile
-from simconsole.values.errors import ProfileError
+from simconsole.values.errors import ProfileError, VehicleError
 from simconsole.values.kernels import Row
 from simconsole.values.layout import read, write
 from simconsole.values.platform import Ground, Platform, Pose
@@ -50,9 +50,10 @@ def beginning(on: Platform) -> Row:
     return row
 
 
-def tick(on: Platform, before: Row, road_wheel_rad: float) -> Row:
+def tick(on: Platform, before: Row, road_wheel_rad: float, brake: float = 0.0) -> Row:
     row = before.copy()
-    command = VehicleCommand(*(0.0,) * len(LAYOUT.command.names))._replace(road_wheel_rad=road_wheel_rad)
+    command = VehicleCommand(*(0.0,) * len(LAYOUT.command.names))
+    command = command._replace(road_wheel_rad=road_wheel_rad, brake=brake)
     write(row, LAYOUT.command, command)
     on.step(before, row, on.parameters, on.ground, SUBSTEPS)
     return row
@@ -117,6 +118,27 @@ def test_what_cannot_be_used_is_refused(before: str, after: str, told: str, tmp_
     profile.write_text(text.replace(before, after, 1))
     with pytest.raises(ProfileError, match=told):
         platform(profile)
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_a_unit_that_fails_ends_the_drive_with_one_line(version: Version, tmp_path: Path) -> None:
+    profile = build(tmp_path, version)
+    on = platform(profile)
+    first = beginning(on)
+    second = tick(on, first, 0.0)
+    for brake, told in ((2.0, "at 4 ms: .*"), (4.0, "at 8 ms: v: value nan: a finite number")):
+        with pytest.raises(VehicleError, match=rf"^{profile.with_suffix('.fmu')}: {told}") as error:
+            tick(on, second, 0.0, brake)
+        assert "\n" not in str(error.value)
+    like = platform(profile)
+    expected = tick(like, tick(like, first, 0.0), 0.001)
+    assert tick(on, second, 0.001).tobytes() == expected.tobytes(), "from where it was before it failed"
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_a_unit_that_cannot_begin_is_refused(version: Version, tmp_path: Path) -> None:
+    with pytest.raises(VehicleError, match=rf"car{version}\.fmu: at 0 ms: "):
+        platform(build(tmp_path, version, speed_mps=-1.0))
 
 
 def test_another_file_than_the_recorded_one_is_refused(tmp_path: Path) -> None:
