@@ -73,9 +73,23 @@ class SpeedAdvisor:
     def __init__(self, reaction_s: float = 1.0, spare_s: float = SPARE_S) -> None:
         """Advise somebody who follows after `reaction_s`, and passes the line `spare_s` after green has begun."""
         self._reaction_s, self._spare_s = reaction_s, spare_s
+        self._line: object = None
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget what was shown: the way to the line is another."""
         self._shown, self._since_s, self._end_s = NO_ADVICE, -math.inf, -math.inf
 
-    def advise(self, left_m: float, speed_mps: float, limit_mps: float, greens: Greens | None, now_s: float) -> Advice:
+    def advise(
+        self,
+        left_m: float,
+        speed_mps: float,
+        limit_mps: float,
+        greens: Greens | None,
+        now_s: float,
+        *,
+        line: object = None,
+    ) -> Advice:
         """Return what to show now.
 
         Args:
@@ -84,7 +98,11 @@ class SpeedAdvisor:
             limit_mps: what is allowed all the way to the line.
             greens: as they were told; None: nothing was.
             now_s: by the clock of their stamp.
+            line: which line it is, by any name; what was shown on the way to another does not hold for it.
         """
+        if line != self._line:
+            self._line = line
+            self.reset()
         if greens is None or not 0.0 < left_m <= REACH_M or not -OLD_S <= now_s - greens.stamp_s <= OLD_S:
             return self._show(NO_ADVICE, now_s, -math.inf)
         shown = self._shown

@@ -71,6 +71,18 @@ def test_nothing_is_advised_without_news_far_away_and_to_who_stands() -> None:
     assert advisor.advise(3.0, 0.0, LIMIT_MPS, Greens(((0.0, math.inf),), 0.0), 0.0).high_mps == LIMIT_MPS
 
 
+def test_advice_ends_with_its_line() -> None:
+    """What is kept in front of a line, where nobody reads any more, is not kept for the next one that is as near."""
+    advisor = SpeedAdvisor()
+    green = advisor.advise(10.0, 12.0, LIMIT_MPS, Greens(((0.0, 30.0),), 0.0), 0.0, line="first")
+    assert green.kind is Advised.SPEED
+    red = Greens(((20.0, 40.0),), 0.1)
+    assert advisor.advise(9.0, 12.0, LIMIT_MPS, red, 0.1, line="first") == green
+    assert advisor.advise(15.0, 12.0, LIMIT_MPS, red, 0.2, line="second") == STOP
+    advisor.reset()
+    assert advisor.advise(9.0, 12.0, LIMIT_MPS, Greens(((0.0, 30.0),), 0.2), 0.3, line="second") == green
+
+
 class Approach(NamedTuple):
     """A drive to a light."""
 
