@@ -13,7 +13,7 @@ from typing import Final, NamedTuple
 REACH_M: Final = 300.0
 """A line further away asks for nothing yet: signals are not heard there."""
 LEAST_MPS: Final = 5.0
-"""Nobody is told to drive slower: the `min-speed` of SUMO's device for the same."""
+"""Nobody is told to drive slower where that is allowed: the `min-speed` of SUMO's device for the same."""
 SPARE_S: Final = 1.5
 """The line is passed so long after green has begun, and before it ends, where there is a choice."""
 LEAST_SPARE_S: Final = 0.4
@@ -158,12 +158,12 @@ def band_of(
     begin_s, end_s = green_s
     first_s = begin_s + spare_s if begin_s > 0.0 else 0.0
     last_s = end_s - spare_s
-    least, most = LEAST_MPS, limit_mps
+    least, most = min(LEAST_MPS, limit_mps), limit_mps
 
     def arrives_s(speed: float) -> float:
         return arrival_s(left_m, speed_mps, speed, reaction_s)
 
-    if last_s < first_s or least > most or arrives_s(most) > last_s or arrives_s(least) < first_s:
+    if last_s < first_s or most <= 0.0 or arrives_s(most) > last_s or arrives_s(least) < first_s:
         return None
     low = least if arrives_s(least) <= last_s else _where(arrives_s, last_s, least, most)[1]
     high = most if arrives_s(most) >= first_s else _where(arrives_s, first_s, least, most)[0]

@@ -59,6 +59,15 @@ def test_nothing_legal_is_prepare_to_stop() -> None:
     assert LEAST_MPS <= found.low_mps <= found.target_mps <= found.high_mps <= LIMIT_MPS
 
 
+@pytest.mark.parametrize("limit_mps", [4.0, 5.0 / 3.6])
+def test_where_less_is_allowed_than_anybody_is_told_to_drive_that_is_advised(limit_mps: float) -> None:
+    for end_s in (60.0, math.inf):
+        found = SpeedAdvisor().advise(40.0, limit_mps, limit_mps, Greens(((0.0, end_s),), 0.0), 0.0)
+        assert found == Advice(Advised.SPEED, limit_mps, limit_mps, limit_mps)
+    assert SpeedAdvisor().advise(40.0, limit_mps, limit_mps, Greens(((60.0, 90.0),), 0.0), 0.0) == STOP
+    assert SpeedAdvisor().advise(40.0, limit_mps, 0.0, Greens(((0.0, math.inf),), 0.0), 0.0) == STOP
+
+
 def test_nothing_is_advised_without_news_far_away_and_to_who_stands() -> None:
     greens = Greens(((20.0, 40.0),), 0.0)
     advisor = SpeedAdvisor()
