@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import msgspec
 
@@ -17,12 +17,14 @@ from simconsole.values.errors import BridgeError, OtherDriveError
 from simconsole.values.units import NS_PER_S
 from simconsole.world.rules.speed_advice import NO_ADVICE, Advice, Advised
 
+if TYPE_CHECKING:
+    from simconsole.drivers.autopilot.route_advice import RouteAdvice
+
 ADVICE_BYTES: Final = 256
 OLD_S: Final = 1.0
 """Advice that was not renewed for so long is not shown: who gives it has fallen silent."""
 _RATE_HZ: Final = 10.0
 _WAIT_S: Final = 0.1
-_PATIENCE_S: Final = 5.0
 
 
 class AdviceWorker(Worker, frozen=True, kw_only=True):
@@ -46,32 +48,42 @@ class AdviceWorker(Worker, frozen=True, kw_only=True):
             if stop():
                 return
             time.sleep(_WAIT_S)
-        url = (folder / self.address).read_text("utf-8")
+        advice = self._route_advice()
         while not stop():
+            # A bridge that is started again may listen at another port.
+            url = (folder / self.address).read_text("utf-8")
             try:
-                self._advise(url, slot, stop)
+                self._advise(advice, url, slot, stop)
             except OtherDriveError:
                 raise
             except BridgeError:
-                time.sleep(_WAIT_S)  # its bridge is started again
+                time.sleep(_WAIT_S)
 
-    def _advise(self, url: str, slot: ByteSlot, stop: Callable[[], bool]) -> None:
+    def _route_advice(self) -> "RouteAdvice":
+        from simconsole.drivers.autopilot.route_advice import RouteAdvice
+        from simconsole.world.kinds.worlds import open_world
+
+        return RouteAdvice(open_world(self.world), self.vehicle)
+
+    def _advise(self, advice: "RouteAdvice", url: str, slot: ByteSlot, stop: Callable[[], bool]) -> None:
+        """Advise as long as the connection holds.
+
+        Raises:
+            BridgeError: it does not.
+        """
         from simconsole.bridge.client.bridge_client import BridgeClient
         from simconsole.bridge.transport.addresses import reached_here
         from simconsole.drivers.autopilot.lights import SIGNALS, SIGNALS_TYPE, lights_of
         from simconsole.drivers.autopilot.motion import Odometry, motion_of
         from simconsole.drivers.autopilot.program import ODOMETRY
-        from simconsole.drivers.autopilot.route_advice import RouteAdvice
-        from simconsole.world.kinds.worlds import open_world
 
-        advice = RouteAdvice(open_world(self.world), self.vehicle)
         odometry, signals = (self.rename.get(topic, self.namespace + topic) for topic in (ODOMETRY, SIGNALS))
         with BridgeClient(
-            reached_here(url), token=self.token, certificate=self.certificate, drive=self.drive, until_good_bye=True
+            reached_here(url), token=self.token, certificate=self.certificate, drive=self.drive, comes_back=False
         ) as client:
             client.subscribe(odometry, "nav_msgs/Odometry", reads=Odometry, throttle_rate=round(1000.0 / _RATE_HZ))
             client.subscribe(signals, SIGNALS_TYPE)
-            client.connect(_PATIENCE_S)
+            client.connect()
             while not stop():
                 received = client.receive(_WAIT_S)
                 if received is None:

@@ -6,6 +6,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
+from simconsole.bridge.client.bridge_client import BridgeClient
 from simconsole.processes.byte_slot import ByteSlot
 from simconsole.processes.worker import WorkerSpec, load_worker
 from simconsole.profiles.files.vehicle_files import load_vehicle
@@ -80,6 +81,28 @@ def test_advice_is_shown_until_it_is_old_and_logged_when_it_is_another(tmp_path:
     assert source.take_messages() == []
     slot.write(2_200_000_000, to_bytes(STOP))
     assert source.take_messages() == [(ADVICE, to_bytes(STOP))]
+
+
+def test_a_bridge_that_was_started_again_is_looked_for_where_it_listens_now(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With port 0 that is another port; a client that came back by itself would ask at the first one for ever."""
+    reached = list[str]()
+
+    class Client(BridgeClient):
+        def connect(self, patience_s: float = 0.0) -> None:
+            reached.append(self.url)
+            (tmp_path / "address").write_text(f"ws://127.0.0.1:{len(reached)}")
+            self.disconnect()
+
+    monkeypatch.setattr("simconsole.bridge.client.bridge_client.BridgeClient", Client)
+    ByteSlot.create(tmp_path / ADVICE, ADVICE_BYTES)
+    (tmp_path / "address").write_text("ws://127.0.0.1:9")
+    worker = AdviceWorker(
+        world=load_world("urban_signals"), vehicle=load_vehicle("hatchback"), drive="a", address="address"
+    )
+    worker.run(tmp_path, iter([False] * 40 + [True] * 9).__next__)
+    assert reached[:3] == ["ws://127.0.0.1:9", "ws://127.0.0.1:1", "ws://127.0.0.1:2"]
 
 
 def test_what_is_no_advice_is_refused() -> None:
