@@ -14,7 +14,7 @@ from simconsole.profiles.vehicle import VehicleProfile
 from simconsole.profiles.world import WorldProfile
 from simconsole.recording.log_header import ADVICE
 from simconsole.values.errors import BridgeError, OtherDriveError
-from simconsole.values.units import NS_PER_S
+from simconsole.values.units import NS_PER_S, tick_time_ns
 from simconsole.world.rules.speed_advice import NO_ADVICE, Advice, Advised
 
 if TYPE_CHECKING:
@@ -115,6 +115,13 @@ def from_bytes(content: bytes) -> Advice:
         raise ValueError(f"advice: {problem}") from None
 
 
+_NOTHING: Final = to_bytes(NO_ADVICE)
+
+
+def _is_old(piece: Piece, now_ns: int) -> bool:
+    return now_ns - piece.number > OLD_S * NS_PER_S
+
+
 class NewestAdvice:
     """What the display shows: the newest advice, nothing where it is old."""
 
@@ -126,7 +133,7 @@ class NewestAdvice:
     def __call__(self, now_ns: int) -> Advice:
         """Return what holds at a time of the drive."""
         piece = self._slot.newest()
-        if piece is None or now_ns - piece.number > OLD_S * NS_PER_S:
+        if piece is None or _is_old(piece, now_ns):
             return NO_ADVICE
         if piece is not self._piece:
             self._piece, self._advice = piece, from_bytes(piece.content)
@@ -134,19 +141,20 @@ class NewestAdvice:
 
 
 class AdviceSource:
-    """What was advised, for the log: each advice when it is another."""
+    """What was advised, for the log: each advice when it is another, and none when it is old, as the display has it."""
 
-    def __init__(self, slot: ByteSlot) -> None:
-        self._slot = slot
-        self._told = to_bytes(NO_ADVICE)
+    def __init__(self, slot: ByteSlot, tick_hz: int) -> None:
+        self._slot, self._tick_hz = slot, tick_hz
+        self._told = _NOTHING
 
-    def take_messages(self) -> list[tuple[str, bytes]]:
-        """Return the newest advice, if it is not the one before."""
+    def take_messages(self, tick: int) -> list[tuple[str, bytes]]:
+        """Return what holds at a tick, if it is not what held before."""
         piece = self._slot.newest()
-        if piece is None or piece.content == self._told:
+        content = _NOTHING if piece is None or _is_old(piece, tick_time_ns(tick, self._tick_hz)) else piece.content
+        if content == self._told:
             return []
-        self._told = piece.content
-        return [(ADVICE, piece.content)]
+        self._told = content
+        return [(ADVICE, content)]
 
 
 def gives_advice(session: SessionProfile) -> bool:
@@ -154,10 +162,10 @@ def gives_advice(session: SessionProfile) -> bool:
     return session.mode.pacing == "realtime" and session.features.speed_advice
 
 
-def share_advice(session: SessionProfile, folder: Path) -> AdviceSource | None:
+def share_advice(session: SessionProfile, folder: Path, tick_hz: int) -> AdviceSource | None:
     """Make the memory through which advice comes; None where none is given.
 
     Raises:
         WorkerError: it cannot be made.
     """
-    return AdviceSource(ByteSlot.create(folder / ADVICE, ADVICE_BYTES)) if gives_advice(session) else None
+    return AdviceSource(ByteSlot.create(folder / ADVICE, ADVICE_BYTES), tick_hz) if gives_advice(session) else None
