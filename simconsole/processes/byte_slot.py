@@ -5,7 +5,7 @@ from typing import Final, NamedTuple, Self
 
 import numpy as np
 
-from simconsole.processes.shared_memory import Ring
+from simconsole.processes.shared_memory import Record, Ring
 from simconsole.values.errors import WorkerError
 
 CAPACITY: Final = 4
@@ -25,6 +25,7 @@ class ByteSlot:
     def __init__(self, ring: Ring) -> None:
         self._ring = ring
         self._seen, self._piece = 0, Piece(0, b"")
+        self._taken = 0
 
     @classmethod
     def create(cls, path: Path, most_bytes: int) -> Self:
@@ -63,5 +64,16 @@ class ByteSlot:
             record = self._ring.latest()
             if record is not None:
                 self._seen = record.number
-                self._piece = Piece(record.stamp, record.values.tobytes()[: record.second_stamp])
+                self._piece = _piece_of(record)
         return self._piece if self._seen else None
+
+    def take(self) -> list[Piece]:
+        """Return the pieces since the last call, oldest first, as far as they are still there: CAPACITY - 1 at most."""
+        records = self._ring.since(self._taken)
+        if records:
+            self._taken = records[-1].number
+        return [_piece_of(record) for record in records]
+
+
+def _piece_of(record: Record) -> Piece:
+    return Piece(record.stamp, record.values.tobytes()[: record.second_stamp])

@@ -238,7 +238,7 @@ class PlanSource:
         self._slot = slot
         self._taken: Piece | None = None
 
-    def take_messages(self) -> list[tuple[str, bytes]]:
+    def take_messages(self, tick: int) -> list[tuple[str, bytes]]:
         """Return the newest plan, if nobody has taken it yet."""
         piece = self._slot.newest()
         if piece is None or piece is self._taken:

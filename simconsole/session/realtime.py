@@ -74,7 +74,8 @@ def open_realtime(
     memory = make_memory(folder, console)
     traffic, unpushable = traffic_of(resolved, console, stack, folder), CollisionEnd(console.platform)
     plans = share_plans(resolved.session, folder)
-    recorder = LogRecorder(log, memory.acts.take, traffic, plans, share_advice(resolved.session, folder))
+    advice = share_advice(resolved.session, folder, console.tick_hz)
+    recorder = LogRecorder(log, memory.acts.take, traffic, plans, advice)
     if traffic is not None:
         share_road_users(traffic, folder, runs_signals(resolved))
     ecu = add_can_memory(resolved, console, folder)

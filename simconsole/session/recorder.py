@@ -40,8 +40,8 @@ class NoLog:
 class MessageSource(Protocol):
     """Somebody whose messages the log keeps."""
 
-    def take_messages(self) -> list[tuple[str, bytes]]:
-        """Return the messages since the last call, each with the name of its stream."""
+    def take_messages(self, tick: int) -> list[tuple[str, bytes]]:
+        """Return the messages since the last call, each with the name of its stream; they come with `tick`."""
 
 
 class LogRecorder:
@@ -60,7 +60,7 @@ class LogRecorder:
     def write(self, snapshot: Snapshot) -> int:
         """Append one tick; an exception, as of a failing disk, goes into the log's `failure` and raises an event."""
         try:
-            self._log.append(snapshot.tick, snapshot.vector, self._messages())
+            self._log.append(snapshot.tick, snapshot.vector, self._messages(snapshot.tick))
         except Exception as error:
             self._note(error)
             raise
@@ -69,7 +69,7 @@ class LogRecorder:
     def write_block(self, tick: int, vectors: Row) -> tuple[int, int]:
         """Append the ticks from `tick` on and return as `BlockRecorder`; exceptions as of `write`."""
         try:
-            kept = self._log.append_block(tick, vectors, self._messages())
+            kept = self._log.append_block(tick, vectors, self._messages(tick))
         except Exception as error:
             self._note(error)
             raise
@@ -78,14 +78,14 @@ class LogRecorder:
     def _events(self) -> int:
         return 0 if self._log.failure is None else _RECORDING_FAILED
 
-    def _messages(self) -> list[tuple[str, bytes]]:
+    def _messages(self, tick: int) -> list[tuple[str, bytes]]:
         """Return what the coming tick brings with it."""
         acts = self._take_acts()
         if not acts and not self._sources:
             return []
         for act in acts:
             self._summary.add(act)
-        others = (message for source in self._sources for message in source.take_messages())
+        others = (message for source in self._sources for message in source.take_messages(tick))
         return [*((ACTS, act) for act in acts), *others]
 
     def _note(self, error: Exception) -> None:

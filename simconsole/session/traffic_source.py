@@ -181,7 +181,7 @@ class TrafficSource:
         """Return how many ticks, from `tick` on, do not end a period."""
         return -tick % self._period_ticks
 
-    def take_messages(self) -> list[tuple[str, bytes]]:
+    def take_messages(self, tick: int) -> list[tuple[str, bytes]]:
         """Return the newest road users and the signals that have changed, if nobody has taken them yet."""
         if not self._fresh:
             return []

@@ -3,9 +3,11 @@
 A worker's fields are its whole configuration; `simconsole.processes.worker` brings them into its process.
 """
 
+import math
 import time
+from collections import deque
 from collections.abc import Callable
-from functools import partial
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -14,7 +16,7 @@ import numpy as np
 
 from simconsole.control.requests.refusals import SteeringLimit
 from simconsole.hud.view import HudSettings
-from simconsole.processes.byte_slot import ByteSlot, Piece
+from simconsole.processes.byte_slot import CAPACITY, ByteSlot, Piece
 from simconsole.processes.receipts import Receipts
 from simconsole.processes.shared_memory import EventCounters, Record, Ring, TextQueue
 from simconsole.processes.worker import Worker
@@ -238,14 +240,15 @@ class HudWorker(Worker, frozen=True, kw_only=True):
 class RoadUsersRing:
     """A worker's view of the road users, in a second ring of the run folder: how many, then the users.
 
-    Signals that another simulator runs stand in a slot of their own, where there is one.
+    Signals that another simulator runs stand in a slot of their own, where there is one. A step has those of its own
+    time, or the oldest that are still there.
     """
 
     def __init__(self, folder: Path) -> None:
         self._ring = Ring.open(folder / ROAD_USERS)
         self._signals = ByteSlot.open(folder / SIGNALS) if (folder / SIGNALS).exists() else None
-        self._piece: Piece | None = None
-        self._running: RunningNow = NONE_RUNNING
+        self._pieces: deque[Piece] = deque(maxlen=CAPACITY)
+        self._running = lru_cache(CAPACITY)(partial(changed, NONE_RUNNING))
         self._seen = 0
 
     def newest(self) -> RoadUsersAt:
@@ -268,13 +271,17 @@ class RoadUsersRing:
 
     def signals(self) -> RunningNow:
         """Return the signals that another simulator runs; none where they run their own programs."""
-        piece = None if self._signals is None else self._signals.newest()
-        if piece is not None and piece is not self._piece:
-            self._piece, self._running = piece, changed(NONE_RUNNING, piece.content)
-        return self._running
+        return self._signals_at(math.inf)
 
     def _of(self, record: Record) -> RoadUsersAt:
-        return RoadUsersAt(record.stamp, from_record(record.values), self.signals())
+        return RoadUsersAt(record.stamp, from_record(record.values), self._signals_at(record.stamp))
+
+    def _signals_at(self, tick: float) -> RunningNow:
+        self._pieces.extend([] if self._signals is None else self._signals.take())
+        if not self._pieces:
+            return NONE_RUNNING
+        piece = next((piece for piece in reversed(self._pieces) if piece.number <= tick), self._pieces[0])
+        return self._running(piece.content)
 
 
 def _tick_of(ring: Ring) -> int:

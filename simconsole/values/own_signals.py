@@ -55,7 +55,7 @@ class OwnSignals:
         self._values = dict.fromkeys(self.names, math.nan)
         self._fresh = False
 
-    def take_messages(self) -> list[tuple[str, bytes]]:
+    def take_messages(self, tick: int) -> list[tuple[str, bytes]]:
         """Return the values, if any was set since the last call."""
         fresh, self._fresh = self._fresh, False
         return [(OWN, self._packed.pack(*self._values.values()))] if fresh else []

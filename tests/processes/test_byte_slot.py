@@ -23,6 +23,20 @@ def test_the_newest_piece_arrives_whole_and_an_unread_one_is_replaced(tmp_path: 
         assert reader.newest() == reader.newest() == Piece(number, content)
 
 
+def test_pieces_are_taken_once_and_in_order_as_far_as_they_are_still_there(tmp_path: Path) -> None:
+    slot = ByteSlot.create(tmp_path / "slot", MOST)
+    reader = ByteSlot.open(tmp_path / "slot")
+    assert reader.take() == []
+    slot.write(7, b"a")
+    slot.write(5, b"bc")
+    assert reader.take() == [Piece(7, b"a"), Piece(5, b"bc")]
+    assert reader.take() == []
+    for number in range(9):
+        slot.write(number, b"d")
+    assert [piece.number for piece in reader.take()] == [6, 7, 8]
+    assert reader.newest() == Piece(8, b"d")
+
+
 def test_a_piece_that_is_too_long_is_refused(tmp_path: Path) -> None:
     slot = ByteSlot.create(tmp_path / "slot", MOST)
     with pytest.raises(WorkerError, match="9217 bytes: at most 9216"):

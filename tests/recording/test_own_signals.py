@@ -32,7 +32,7 @@ def log(path: Path, ticks: int, said: dict[int, tuple[float, float]]) -> LogRead
         for tick in range(1, ticks + 1):
             if tick - 1 in said:
                 signals.set(error_m=said[tick - 1][0], gain=said[tick - 1][1])
-            writer.append(tick, np.array([tick, 0.5]), signals.take_messages())
+            writer.append(tick, np.array([tick, 0.5]), signals.take_messages(tick))
     return LogReader(path)
 
 

@@ -68,7 +68,7 @@ class Source:
     def __init__(self, name: str) -> None:
         self._name = name
 
-    def take_messages(self) -> list[tuple[str, bytes]]:
+    def take_messages(self, tick: int) -> list[tuple[str, bytes]]:
         return [(self._name, b"said")]
 
 

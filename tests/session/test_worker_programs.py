@@ -94,3 +94,32 @@ def test_signals_of_another_simulator_come_with_the_road_users(tmp_path: Path) -
     assert [at.signals for at in follower.since()] == [now]
     slot.write(4, b"{}")
     assert follower.signals() == {}
+
+
+def test_each_step_has_the_signals_of_its_own_time(tmp_path: Path) -> None:
+    ring = Ring.create(tmp_path / ROAD_USERS, RECORD_WIDTH, ROAD_USERS_CAPACITY)
+    slot = ByteSlot.create(tmp_path / SIGNALS, 1000)
+    follower = RoadUsersRing(tmp_path)
+    shown = {10: "r", 30: "G", 50: "y"}
+    for tick in range(10, 61, 10):
+        if tick in shown:
+            slot.write(tick, changes(NONE_RUNNING, {"a": Running(shown[tick], (), 0, FAR)}) or b"")
+        ring.write(to_record(np.ones((2, FIELDS))), tick)
+    steps = [(at.tick, at.signals["a"].letters) for at in follower.since()]
+    assert steps == [(10, "r"), (20, "r"), (30, "G"), (40, "G"), (50, "y"), (60, "y")]
+    slot.write(70, changes(NONE_RUNNING, {"a": Running("r", (), 0, FAR)}) or b"")
+    assert follower.newest().signals["a"].letters == "y", "the record of that step is still to come"
+    assert follower.signals()["a"].letters == "r"
+    ring.write(to_record(np.ones((2, FIELDS))), 70)
+    before, newest = follower.newest_two()
+    assert before is not None
+    assert [at.signals["a"].letters for at in (before, newest)] == ["y", "r"]
+
+
+def test_of_a_step_from_before_all_signals_that_are_still_there_it_has_the_oldest(tmp_path: Path) -> None:
+    ring = Ring.create(tmp_path / ROAD_USERS, RECORD_WIDTH, ROAD_USERS_CAPACITY)
+    slot = ByteSlot.create(tmp_path / SIGNALS, 1000)
+    for tick in range(1, 9):
+        slot.write(tick, changes(NONE_RUNNING, {"a": Running("G", (), tick, FAR)}) or b"")
+        ring.write(to_record(np.ones((2, FIELDS))), tick)
+    assert [at.signals["a"].phase for at in RoadUsersRing(tmp_path).since()] == [6, 6, 6, 6, 6, 6, 7, 8]

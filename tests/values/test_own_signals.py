@@ -23,23 +23,23 @@ def test_as_many_as_there_may_be() -> None:
 
 def test_the_log_is_given_all_values_when_one_was_set_and_nothing_otherwise() -> None:
     signals = OwnSignals("gain", "error_m")
-    assert signals.take_messages() == []
+    assert signals.take_messages(0) == []
     signals.set(error_m=-0.25)
-    ((stream, content),) = signals.take_messages()
+    ((stream, content),) = signals.take_messages(0)
     gain, error = struct.unpack("<2d", content)
     assert (stream, math.isnan(gain), error) == (OWN, True, -0.25)
-    assert signals.take_messages() == []
+    assert signals.take_messages(0) == []
     signals.set(gain=2)
-    assert struct.unpack("<2d", signals.take_messages()[0][1]) == (2.0, -0.25)
+    assert struct.unpack("<2d", signals.take_messages(0)[0][1]) == (2.0, -0.25)
 
 
 def test_a_new_drive_begins_with_nothing_said() -> None:
     signals = OwnSignals("gain", "error_m")
     signals.set(gain=1.0, error_m=1.0)
     signals.forget()
-    assert signals.take_messages() == []
+    assert signals.take_messages(0) == []
     signals.set(gain=3.0)
-    assert math.isnan(struct.unpack("<2d", signals.take_messages()[0][1])[1])
+    assert math.isnan(struct.unpack("<2d", signals.take_messages(0)[0][1])[1])
 
 
 def test_a_signal_that_was_not_declared_is_named() -> None:

@@ -4,7 +4,7 @@ from typing import Final
 
 from simconsole.drivers.path_tracker.signal_stops import Approach
 from simconsole.drivers.path_tracker.speed_profile import SpeedProfile
-from simconsole.world.rules.speed_advice import NO_ADVICE, Advice, SpeedAdvisor
+from simconsole.world.rules.speed_advice import LEAST_MPS, NO_ADVICE, Advice, SpeedAdvisor
 from simconsole.world.rules.speed_advice import Advised as Kind
 
 REACTION_S: Final = 0.5
@@ -27,10 +27,19 @@ class Advised:
     ) -> float | None:
         """Return the speed that is advised until the line; None: none is, and lights are obeyed as they come."""
         if approach is None or approach.left_m < LEAST_AHEAD_M:
-            self.advice = NO_ADVICE
+            self._forget()
             return None
         first, last = (round(place / plan.step_m) for place in (s_m, approach.line_m))
         planned = plan.speed_mps[max(first, 0) : max(last, first + 1)]
         limit_mps = float(planned.min()) if len(planned) else 0.0
-        self.advice = self._advisor.advise(approach.left_m, speed_mps, limit_mps, approach.greens, now_s)
+        if limit_mps < LEAST_MPS:  # a tight bend on the way: nobody creeps along all of it for that
+            self._forget()
+            return None
+        self.advice = self._advisor.advise(
+            approach.left_m, speed_mps, limit_mps, approach.greens, now_s, line=approach.line_m
+        )
         return self.advice.target_mps if self.advice.kind is Kind.SPEED else None
+
+    def _forget(self) -> None:
+        self._advisor.reset()
+        self.advice = NO_ADVICE

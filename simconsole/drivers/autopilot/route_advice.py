@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from simconsole.drivers.autopilot.lights import signal_stops
-from simconsole.drivers.path_tracker.signal_stops import Light
+from simconsole.drivers.path_tracker.signal_stops import Approach, Light
 from simconsole.drivers.path_tracker.state_estimator import VehicleMotion
 from simconsole.profiles.vehicle import VehicleProfile
 from simconsole.world.rules.speed_advice import NO_ADVICE, Advice, SpeedAdvisor
@@ -33,15 +33,23 @@ class RouteAdvice:
 
     def advise(self, seen: VehicleMotion, now_s: float) -> Advice:
         """Return what to drive now."""
-        if self._lights is None:
+        approach, limit_mps = self._approach(seen)
+        if approach is None:
+            self._advisor.reset()
             return NO_ADVICE
+        left_m, line = approach.left_m, approach.line_m
+        return self._advisor.advise(left_m, seen.vx_mps, limit_mps, approach.greens, now_s, line=line)
+
+    def _approach(self, seen: VehicleMotion) -> tuple[Approach | None, float]:
+        """Return the way to the next line and its limit (m/s); None: there is none, or it is not theirs."""
+        if self._lights is None:
+            return None, 0.0
         place = self._route.project(seen.x_m, seen.y_m)
         beside = abs(place.lateral_m) > OFF_ROUTE_M
         if beside or abs(math.remainder(seen.yaw_rad - self._route.at(place.s_m).yaw_rad, math.tau)) > _AGAINST_RAD:
-            return NO_ADVICE
+            return None, 0.0
         approach = self._lights.approach(place.s_m)
         if approach is None:
-            return NO_ADVICE
+            return None, 0.0
         way_m = np.arange(place.s_m, max(approach.line_m, place.s_m + 1.0), _LIMIT_EVERY_M)
-        limit_mps = float(self._route.limits_at(way_m).min())
-        return self._advisor.advise(approach.left_m, seen.vx_mps, limit_mps, approach.greens, now_s)
+        return approach, float(self._route.limits_at(way_m).min())

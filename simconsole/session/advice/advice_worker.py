@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import msgspec
 
@@ -14,15 +14,17 @@ from simconsole.profiles.vehicle import VehicleProfile
 from simconsole.profiles.world import WorldProfile
 from simconsole.recording.log_header import ADVICE
 from simconsole.values.errors import BridgeError, OtherDriveError
-from simconsole.values.units import NS_PER_S
+from simconsole.values.units import NS_PER_S, tick_time_ns
 from simconsole.world.rules.speed_advice import NO_ADVICE, Advice, Advised
+
+if TYPE_CHECKING:
+    from simconsole.drivers.autopilot.route_advice import RouteAdvice
 
 ADVICE_BYTES: Final = 256
 OLD_S: Final = 1.0
 """Advice that was not renewed for so long is not shown: who gives it has fallen silent."""
 _RATE_HZ: Final = 10.0
 _WAIT_S: Final = 0.1
-_PATIENCE_S: Final = 5.0
 
 
 class AdviceWorker(Worker, frozen=True, kw_only=True):
@@ -46,32 +48,42 @@ class AdviceWorker(Worker, frozen=True, kw_only=True):
             if stop():
                 return
             time.sleep(_WAIT_S)
-        url = (folder / self.address).read_text("utf-8")
+        advice = self._route_advice()
         while not stop():
+            # A bridge that is started again may listen at another port.
+            url = (folder / self.address).read_text("utf-8")
             try:
-                self._advise(url, slot, stop)
+                self._advise(advice, url, slot, stop)
             except OtherDriveError:
                 raise
             except BridgeError:
-                time.sleep(_WAIT_S)  # its bridge is started again
+                time.sleep(_WAIT_S)
 
-    def _advise(self, url: str, slot: ByteSlot, stop: Callable[[], bool]) -> None:
+    def _route_advice(self) -> "RouteAdvice":
+        from simconsole.drivers.autopilot.route_advice import RouteAdvice
+        from simconsole.world.kinds.worlds import open_world
+
+        return RouteAdvice(open_world(self.world), self.vehicle)
+
+    def _advise(self, advice: "RouteAdvice", url: str, slot: ByteSlot, stop: Callable[[], bool]) -> None:
+        """Advise as long as the connection holds.
+
+        Raises:
+            BridgeError: it does not.
+        """
         from simconsole.bridge.client.bridge_client import BridgeClient
         from simconsole.bridge.transport.addresses import reached_here
         from simconsole.drivers.autopilot.lights import SIGNALS, SIGNALS_TYPE, lights_of
         from simconsole.drivers.autopilot.motion import Odometry, motion_of
         from simconsole.drivers.autopilot.program import ODOMETRY
-        from simconsole.drivers.autopilot.route_advice import RouteAdvice
-        from simconsole.world.kinds.worlds import open_world
 
-        advice = RouteAdvice(open_world(self.world), self.vehicle)
         odometry, signals = (self.rename.get(topic, self.namespace + topic) for topic in (ODOMETRY, SIGNALS))
         with BridgeClient(
-            reached_here(url), token=self.token, certificate=self.certificate, drive=self.drive, until_good_bye=True
+            reached_here(url), token=self.token, certificate=self.certificate, drive=self.drive, comes_back=False
         ) as client:
             client.subscribe(odometry, "nav_msgs/Odometry", reads=Odometry, throttle_rate=round(1000.0 / _RATE_HZ))
             client.subscribe(signals, SIGNALS_TYPE)
-            client.connect(_PATIENCE_S)
+            client.connect()
             while not stop():
                 received = client.receive(_WAIT_S)
                 if received is None:
@@ -103,6 +115,13 @@ def from_bytes(content: bytes) -> Advice:
         raise ValueError(f"advice: {problem}") from None
 
 
+_NOTHING: Final = to_bytes(NO_ADVICE)
+
+
+def _is_old(piece: Piece, now_ns: int) -> bool:
+    return now_ns - piece.number > OLD_S * NS_PER_S
+
+
 class NewestAdvice:
     """What the display shows: the newest advice, nothing where it is old."""
 
@@ -114,7 +133,7 @@ class NewestAdvice:
     def __call__(self, now_ns: int) -> Advice:
         """Return what holds at a time of the drive."""
         piece = self._slot.newest()
-        if piece is None or now_ns - piece.number > OLD_S * NS_PER_S:
+        if piece is None or _is_old(piece, now_ns):
             return NO_ADVICE
         if piece is not self._piece:
             self._piece, self._advice = piece, from_bytes(piece.content)
@@ -122,19 +141,20 @@ class NewestAdvice:
 
 
 class AdviceSource:
-    """What was advised, for the log: each advice when it is another."""
+    """What was advised, for the log: each advice when it is another, and none when it is old, as the display has it."""
 
-    def __init__(self, slot: ByteSlot) -> None:
-        self._slot = slot
-        self._told = to_bytes(NO_ADVICE)
+    def __init__(self, slot: ByteSlot, tick_hz: int) -> None:
+        self._slot, self._tick_hz = slot, tick_hz
+        self._told = _NOTHING
 
-    def take_messages(self) -> list[tuple[str, bytes]]:
-        """Return the newest advice, if it is not the one before."""
+    def take_messages(self, tick: int) -> list[tuple[str, bytes]]:
+        """Return what holds at a tick, if it is not what held before."""
         piece = self._slot.newest()
-        if piece is None or piece.content == self._told:
+        content = _NOTHING if piece is None or _is_old(piece, tick_time_ns(tick, self._tick_hz)) else piece.content
+        if content == self._told:
             return []
-        self._told = piece.content
-        return [(ADVICE, piece.content)]
+        self._told = content
+        return [(ADVICE, content)]
 
 
 def gives_advice(session: SessionProfile) -> bool:
@@ -142,10 +162,10 @@ def gives_advice(session: SessionProfile) -> bool:
     return session.mode.pacing == "realtime" and session.features.speed_advice
 
 
-def share_advice(session: SessionProfile, folder: Path) -> AdviceSource | None:
+def share_advice(session: SessionProfile, folder: Path, tick_hz: int) -> AdviceSource | None:
     """Make the memory through which advice comes; None where none is given.
 
     Raises:
         WorkerError: it cannot be made.
     """
-    return AdviceSource(ByteSlot.create(folder / ADVICE, ADVICE_BYTES)) if gives_advice(session) else None
+    return AdviceSource(ByteSlot.create(folder / ADVICE, ADVICE_BYTES), tick_hz) if gives_advice(session) else None

@@ -29,6 +29,7 @@ _LETTER_BYTES: Final = 4
 class How(IntEnum):
     """What SUMO's worker says, as the number of the piece."""
 
+    STARTING = 0  # nothing yet; a process that finds it is not the first, which has ended while SUMO loaded
     RUNS = 1
     REFUSED = 2  # it cannot begin; the piece says why
     LOST = 3  # it has failed; likewise

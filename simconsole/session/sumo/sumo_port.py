@@ -55,12 +55,15 @@ class SumoPort:
             ProfileError: it refuses, or is not there in time.
         """
         deadline_s = time.monotonic() + patience_s + CONNECT_S
-        while (said := self._memory.said.newest()) is None:
+        while (said := self._memory.said.newest()) is None or said.number == How.STARTING:
             if not alive() or time.monotonic() > deadline_s:
                 raise ProfileError(f"{KEY}: SUMO: its worker does not answer: a simulation that starts")
             time.sleep(_LOOK_S)
+        why = said.content.decode(errors="replace")
+        if said.number == How.LOST:
+            raise ProfileError(f"{KEY}: SUMO: {why}: a simulation that starts")
         if said.number != How.RUNS:
-            raise ProfileError(said.content.decode(errors="replace"))
+            raise ProfileError(why)
         self._take()
         self._ask(self._ego)
 

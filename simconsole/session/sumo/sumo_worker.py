@@ -47,6 +47,7 @@ class SumoWorker(Worker, frozen=True, kw_only=True):
         if memory.said.newest() is not None:
             _give_up(memory, "its process has ended", stop)
             return
+        memory.say(How.STARTING)  # libsumo may take this process with it, and would again and again
         try:
             traffic = SumoTraffic(self.traffic, self._around())
         except ProfileError as problem:

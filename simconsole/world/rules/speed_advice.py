@@ -13,7 +13,7 @@ from typing import Final, NamedTuple
 REACH_M: Final = 300.0
 """A line further away asks for nothing yet: signals are not heard there."""
 LEAST_MPS: Final = 5.0
-"""Nobody is told to drive slower: the `min-speed` of SUMO's device for the same."""
+"""Nobody is told to drive slower where that is allowed: the `min-speed` of SUMO's device for the same."""
 SPARE_S: Final = 1.5
 """The line is passed so long after green has begun, and before it ends, where there is a choice."""
 LEAST_SPARE_S: Final = 0.4
@@ -73,9 +73,23 @@ class SpeedAdvisor:
     def __init__(self, reaction_s: float = 1.0, spare_s: float = SPARE_S) -> None:
         """Advise somebody who follows after `reaction_s`, and passes the line `spare_s` after green has begun."""
         self._reaction_s, self._spare_s = reaction_s, spare_s
+        self._line: object = None
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget what was shown: the way to the line is another."""
         self._shown, self._since_s, self._end_s = NO_ADVICE, -math.inf, -math.inf
 
-    def advise(self, left_m: float, speed_mps: float, limit_mps: float, greens: Greens | None, now_s: float) -> Advice:
+    def advise(
+        self,
+        left_m: float,
+        speed_mps: float,
+        limit_mps: float,
+        greens: Greens | None,
+        now_s: float,
+        *,
+        line: object = None,
+    ) -> Advice:
         """Return what to show now.
 
         Args:
@@ -84,7 +98,11 @@ class SpeedAdvisor:
             limit_mps: what is allowed all the way to the line.
             greens: as they were told; None: nothing was.
             now_s: by the clock of their stamp.
+            line: which line it is, by any name; what was shown on the way to another does not hold for it.
         """
+        if line != self._line:
+            self._line = line
+            self.reset()
         if greens is None or not 0.0 < left_m <= REACH_M or not -OLD_S <= now_s - greens.stamp_s <= OLD_S:
             return self._show(NO_ADVICE, now_s, -math.inf)
         shown = self._shown
@@ -140,12 +158,12 @@ def band_of(
     begin_s, end_s = green_s
     first_s = begin_s + spare_s if begin_s > 0.0 else 0.0
     last_s = end_s - spare_s
-    least, most = LEAST_MPS, limit_mps
+    least, most = min(LEAST_MPS, limit_mps), limit_mps
 
     def arrives_s(speed: float) -> float:
         return arrival_s(left_m, speed_mps, speed, reaction_s)
 
-    if last_s < first_s or least > most or arrives_s(most) > last_s or arrives_s(least) < first_s:
+    if last_s < first_s or most <= 0.0 or arrives_s(most) > last_s or arrives_s(least) < first_s:
         return None
     low = least if arrives_s(least) <= last_s else _where(arrives_s, last_s, least, most)[1]
     high = most if arrives_s(most) >= first_s else _where(arrives_s, first_s, least, most)[0]

@@ -10,12 +10,14 @@ import os
 import shutil
 import socket
 import subprocess
+import sys
 import time
 from collections.abc import Callable, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
+from simconsole.processes.lifetimes import end_with_parent_thread, undone
 from simconsole.profiles.traffic import SumoProfile
 from simconsole.values.errors import ProfileError
 
@@ -60,6 +62,8 @@ def sumo_program() -> str | None:
 
 def open_engine(profile: SumoProfile, options: Sequence[str]) -> Engine:
     """Return SUMO, started with these options, or the one that waits at the profile's address.
+
+    On Linux a program that is started here ends with the thread that has started it, however that ends.
 
     Raises:
         ProfileError: it is not installed, does not start or answer, or this process has one already.
@@ -114,10 +118,20 @@ def _started(profile: SumoProfile, options: Sequence[str]) -> Engine:
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,  # errors only, and SUMO ends with the first: the pipe never fills
             process_group=0 if os.name == "posix" else None,
+            # While it loads there is no connection yet: it would outlive a core that is killed.
+            preexec_fn=end_with_parent_thread if sys.platform == "linux" else None,
         )
     except OSError as error:
         raise ProfileError(f"{KEY}: sumo: {error.strerror}: a program that runs") from None
-    return _connected(profile, "127.0.0.1", port, process)
+    try:
+        with undone(process.kill):
+            return _connected(profile, "127.0.0.1", port, process)
+    except ProfileError:
+        raise  # it has been ended
+    except BaseException:
+        process.kill()
+        _end(process)
+        raise
 
 
 def _connected(profile: SumoProfile, host: str, port: int, process: "subprocess.Popen[bytes] | None") -> Engine:

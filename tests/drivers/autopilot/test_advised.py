@@ -13,6 +13,7 @@ from simconsole.values.signals import SignalState
 from simconsole.world.path_geometry import Piece
 from simconsole.world.route import Route, Stretch
 from simconsole.world.rules.approaches import StopLine
+from simconsole.world.rules.speed_advice import NO_ADVICE
 from simconsole.world.rules.timetable import greens
 from tests.samples import Sample
 
@@ -103,3 +104,6 @@ def test_nothing_is_advised_where_no_light_is_ahead_or_nothing_was_told() -> Non
     free = follower.target_mps(stops.approach(200.0), 200.0, 10.0, control.profile, 0.0)
     assert free is not None
     assert free > 0.9 * (LIMIT_MPS - COMFORT.margin_mps)
+    bend = control.profile._replace(speed_mps=np.where(np.arange(len(control.profile.speed_mps)) == 600, 3.0, 10.0))
+    assert follower.target_mps(stops.approach(200.0), 200.0, 10.0, bend, 0.0) is None, "nobody creeps to a bend"
+    assert follower.advice == NO_ADVICE

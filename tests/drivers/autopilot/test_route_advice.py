@@ -49,3 +49,14 @@ def test_nothing_is_advised_beside_the_route_against_it_and_behind_the_last_ligh
     assert RouteAdvice(WORLD, CAR).advise(at(200.0, 12.0), 0.1) == NO_ADVICE, "nobody has told of the light"
     without = RouteAdvice(open_world(load_world("urban")), CAR)
     assert without.advise(at(200.0, 12.0), 0.1) == NO_ADVICE
+
+
+def test_who_has_left_the_route_is_advised_anew() -> None:
+    advice = advising((0.0, 30.0))
+    near = at(12.0, 12.0)
+    shown = advice.advise(near, 0.1)
+    assert shown.kind is Advised.SPEED
+    advice.see({(NAME, LINE.link): Light(SignalState.STOP_AND_REMAIN, 6, 20.0, 0.2, ((20.0, 40.0),))})
+    assert advice.advise(near, 0.2) == shown, "so near nobody reads any more"
+    assert advice.advise(at(12.0, 12.0, beside_m=OFF_ROUTE_M + 1.0), 0.3) == NO_ADVICE
+    assert advice.advise(near, 0.4).kind is Advised.STOP

@@ -6,6 +6,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
+from simconsole.bridge.client.bridge_client import BridgeClient
 from simconsole.processes.byte_slot import ByteSlot
 from simconsole.processes.worker import WorkerSpec, load_worker
 from simconsole.profiles.files.vehicle_files import load_vehicle
@@ -26,6 +27,7 @@ from simconsole.session.lifecycle import drive
 from simconsole.session.preconditions import check_session
 from simconsole.session.resolution import load_session, resolve
 from simconsole.values.errors import ProfileError
+from simconsole.values.units import tick_time_ns
 from simconsole.world.rules.speed_advice import NO_ADVICE, STOP, Advice, Advised
 
 BAND = Advice(Advised.SPEED, 8.0, 11.0, 10.5)
@@ -67,19 +69,46 @@ def test_advice_without_topics_is_refused(tmp_path: Path) -> None:
 
 def test_advice_is_shown_until_it_is_old_and_logged_when_it_is_another(tmp_path: Path) -> None:
     slot = ByteSlot.create(tmp_path / ADVICE, ADVICE_BYTES)
-    newest, source = NewestAdvice(tmp_path), AdviceSource(ByteSlot.open(tmp_path / ADVICE))
+    newest, source = NewestAdvice(tmp_path), AdviceSource(ByteSlot.open(tmp_path / ADVICE), 250)
     assert newest(0) == NO_ADVICE
-    assert source.take_messages() == []
+    assert source.take_messages(1) == []
     slot.write(1_000_000_000, to_bytes(NO_ADVICE))
-    assert source.take_messages() == []
+    assert source.take_messages(251) == []
     slot.write(2_000_000_000, to_bytes(BAND))
     assert newest(2_500_000_000) == BAND
     assert newest(2_000_000_001 + round(OLD_S * 1e9)) == NO_ADVICE
-    assert source.take_messages() == [(ADVICE, to_bytes(BAND))]
+    assert source.take_messages(501) == [(ADVICE, to_bytes(BAND))]
     slot.write(2_100_000_000, to_bytes(BAND))
-    assert source.take_messages() == []
+    assert source.take_messages(530) == []
     slot.write(2_200_000_000, to_bytes(STOP))
-    assert source.take_messages() == [(ADVICE, to_bytes(STOP))]
+    assert source.take_messages(551) == [(ADVICE, to_bytes(STOP))]
+    shown = [(tick, newest(tick_time_ns(tick, 250)) != NO_ADVICE) for tick in range(799, 803)]
+    assert shown == [(799, True), (800, True), (801, False), (802, False)]
+    assert [source.take_messages(tick) for tick, _ in shown] == [[], [], [(ADVICE, to_bytes(NO_ADVICE))], []]
+    slot.write(3_300_000_000, to_bytes(STOP))
+    assert source.take_messages(826) == [(ADVICE, to_bytes(STOP))]
+
+
+def test_a_bridge_that_was_started_again_is_looked_for_where_it_listens_now(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With port 0 that is another port; a client that came back by itself would ask at the first one for ever."""
+    reached = list[str]()
+
+    class Client(BridgeClient):
+        def connect(self, patience_s: float = 0.0) -> None:
+            reached.append(self.url)
+            (tmp_path / "address").write_text(f"ws://127.0.0.1:{len(reached)}")
+            self.disconnect()
+
+    monkeypatch.setattr("simconsole.bridge.client.bridge_client.BridgeClient", Client)
+    ByteSlot.create(tmp_path / ADVICE, ADVICE_BYTES)
+    (tmp_path / "address").write_text("ws://127.0.0.1:9")
+    worker = AdviceWorker(
+        world=load_world("urban_signals"), vehicle=load_vehicle("hatchback"), drive="a", address="address"
+    )
+    worker.run(tmp_path, iter([False] * 40 + [True] * 9).__next__)
+    assert reached[:3] == ["ws://127.0.0.1:9", "ws://127.0.0.1:1", "ws://127.0.0.1:2"]
 
 
 def test_what_is_no_advice_is_refused() -> None:

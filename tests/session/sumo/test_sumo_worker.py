@@ -10,9 +10,11 @@ from simconsole.processes.worker import WorkerSpec, load_worker
 from simconsole.profiles.files.world_files import load_world
 from simconsole.profiles.traffic import SumoProfile, TrafficProfile
 from simconsole.profiles.world import RoadsProfile
+from simconsole.session.sumo import sumo_worker
 from simconsole.session.sumo.sumo_memory import How, SumoMemory
 from simconsole.session.sumo.sumo_port import SumoPort
 from simconsole.session.sumo.sumo_worker import MOST_AT_ONCE, SumoWorker
+from simconsole.values.errors import ProfileError
 from simconsole.world.traffic.road_users import RoadUser, users
 from tests.world.sumo_traffic.on_sumo import HZ, around, box, sumo_traffic
 
@@ -39,7 +41,7 @@ class Core:
         def stop() -> bool:
             nonlocal turns
             said = self.memory.said.newest()
-            if said is None:
+            if said is None or said.number == How.STARTING:
                 return False
             turns += 1
             if turns == 1 and said.number == How.RUNS:
@@ -139,6 +141,25 @@ def test_a_process_that_is_started_again_says_that_traffic_is_lost(
     assert "traffic has failed: its process has ended" in caplog.text
     assert len(core.port.step(START)) == 0
     assert core.port.lost == "its process has ended"
+
+
+def test_a_sumo_that_crashed_while_it_loaded_is_not_started_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its process is gone without a word, libsumo in it; the next one finds that it had begun."""
+    core, starts = Core(tmp_path), list[object]()
+
+    def crash(*given: object) -> None:
+        starts.append(given)
+        raise SystemExit(139)
+
+    monkeypatch.setattr(sumo_worker, "SumoTraffic", crash)
+    with pytest.raises(SystemExit):
+        core.worker.run(tmp_path, lambda: True)
+    core.worker.run(tmp_path, lambda: True)
+    assert len(starts) == 1
+    with pytest.raises(ProfileError, match=r"sumo: SUMO: its process has ended: a simulation that starts"):
+        core.port.wait(lambda: True)
 
 
 def test_its_configuration_travels_as_json(tmp_path: Path) -> None:

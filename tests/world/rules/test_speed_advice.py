@@ -59,6 +59,15 @@ def test_nothing_legal_is_prepare_to_stop() -> None:
     assert LEAST_MPS <= found.low_mps <= found.target_mps <= found.high_mps <= LIMIT_MPS
 
 
+@pytest.mark.parametrize("limit_mps", [4.0, 5.0 / 3.6])
+def test_where_less_is_allowed_than_anybody_is_told_to_drive_that_is_advised(limit_mps: float) -> None:
+    for end_s in (60.0, math.inf):
+        found = SpeedAdvisor().advise(40.0, limit_mps, limit_mps, Greens(((0.0, end_s),), 0.0), 0.0)
+        assert found == Advice(Advised.SPEED, limit_mps, limit_mps, limit_mps)
+    assert SpeedAdvisor().advise(40.0, limit_mps, limit_mps, Greens(((60.0, 90.0),), 0.0), 0.0) == STOP
+    assert SpeedAdvisor().advise(40.0, limit_mps, 0.0, Greens(((0.0, math.inf),), 0.0), 0.0) == STOP
+
+
 def test_nothing_is_advised_without_news_far_away_and_to_who_stands() -> None:
     greens = Greens(((20.0, 40.0),), 0.0)
     advisor = SpeedAdvisor()
@@ -69,6 +78,18 @@ def test_nothing_is_advised_without_news_far_away_and_to_who_stands() -> None:
     assert advisor.advise(-1.0, 12.0, LIMIT_MPS, greens, 0.0) == NO_ADVICE
     assert advisor.advise(3.0, 0.0, LIMIT_MPS, greens, 0.0) == NO_ADVICE
     assert advisor.advise(3.0, 0.0, LIMIT_MPS, Greens(((0.0, math.inf),), 0.0), 0.0).high_mps == LIMIT_MPS
+
+
+def test_advice_ends_with_its_line() -> None:
+    """What is kept in front of a line, where nobody reads any more, is not kept for the next one that is as near."""
+    advisor = SpeedAdvisor()
+    green = advisor.advise(10.0, 12.0, LIMIT_MPS, Greens(((0.0, 30.0),), 0.0), 0.0, line="first")
+    assert green.kind is Advised.SPEED
+    red = Greens(((20.0, 40.0),), 0.1)
+    assert advisor.advise(9.0, 12.0, LIMIT_MPS, red, 0.1, line="first") == green
+    assert advisor.advise(15.0, 12.0, LIMIT_MPS, red, 0.2, line="second") == STOP
+    advisor.reset()
+    assert advisor.advise(9.0, 12.0, LIMIT_MPS, Greens(((0.0, 30.0),), 0.2), 0.3, line="second") == green
 
 
 class Approach(NamedTuple):

@@ -1,6 +1,10 @@
 """Where SUMO is looked for, and what is said of one that is not there."""
 
+import os
 import socket
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 
@@ -40,3 +44,40 @@ def test_options_that_sumo_refuses_are_told_and_leave_room_for_the_next() -> Non
 
 def test_nothing_is_said_by_a_sumo_of_somebody_else() -> None:
     assert said_by(None) == ""
+
+
+def slow_sumo(folder: Path) -> str:
+    """A SUMO that loads a country: it says its number into the pipe `folder`/told, which it holds until it ends."""
+    program = folder / "sumo"
+    program.write_text(f'#!/bin/sh\nexec >"{folder / "told"}"\necho $$\nexec sleep 600\n')
+    program.chmod(0o755)
+    os.mkfifo(folder / "told")
+    return str(program)
+
+
+def test_a_sumo_that_loads_ends_with_who_has_started_it_however_that_ends(tmp_path: Path) -> None:
+    starts = (
+        "import sys; from simconsole.world.sumo_traffic import engines;"
+        "from simconsole.profiles.traffic import SumoProfile;"
+        "engines.sumo_program = lambda: sys.argv[1];"
+        "engines.open_engine(SumoProfile(backend='traci'), [])"
+    )
+    words = [sys.executable, "-c", starts, slow_sumo(tmp_path)]
+    with subprocess.Popen(words) as core, (tmp_path / "told").open() as told:
+        assert int(told.readline()) > 0
+        core.kill()
+        assert told.read() == "", "its end, when nobody holds the pipe any more"
+
+
+def test_an_interrupt_while_it_loads_ends_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    program, started = slow_sumo(tmp_path), list[subprocess.Popen[bytes]]()
+
+    def connect(port: int, *, proc: subprocess.Popen[bytes], **_: object) -> None:
+        started.append(proc)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(engines, "sumo_program", lambda: program)
+    monkeypatch.setattr("traci.connect", connect)
+    with pytest.raises(KeyboardInterrupt):
+        open_engine(SumoProfile(backend="traci"), [])
+    assert started[0].returncode is not None
