@@ -43,13 +43,15 @@ def test_a_changed_control_value_is_named_with_tick_and_column(copied: Path) -> 
     path = alter(copied / "command_lost.yaml", "{driver: none}", gentler)
     done = simconsole("check", path, "--json")
     assert done.returncode == 1, done.stdout + done.stderr
-    (problem,) = results(done)["scenarios"][0]["problems"]
+    problem, heads, *columns = results(done)["scenarios"][0]["problems"]
     assert problem.startswith(f"{copied / 'golden' / 'command_lost.csv'}: tick ")
     tick, column = problem.split(": ")[1:3]
     assert 2800 < int(tick.removeprefix("tick ")) < 3500, "from the safe stop on, as sampled twice a second"
     assert column.startswith("memory."), "the arbiter's own columns come before what the car makes of them"
     assert "np.float64" not in problem
     assert problem in done.stdout
+    assert heads.split()[:4] == ["column", "from", "accepted", "driven"]
+    assert column in columns[0]
 
 
 def test_a_changed_vehicle_value_is_named_with_tick_and_column(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -58,8 +60,9 @@ def test_a_changed_vehicle_value_is_named_with_tick_and_column(tmp_path: Path, m
     monkeypatch.setattr(profile_files, "profiles_folder", lambda: profiles)
     verdict = check_scenario("launch_and_stop")
     assert not verdict.passed
-    assert any(".csv: tick " in problem and ": driven " in problem for problem in verdict.problems)
-    column = verdict.problems[-1].split(": ")[2]
+    (named,) = (problem for problem in verdict.problems if ".csv: tick " in problem)
+    assert ": driven " in named
+    column = named.split(": ")[2]
     assert column.split(".")[0] in ("vehicle", "platform")
 
 
