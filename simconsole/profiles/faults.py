@@ -69,7 +69,8 @@ class Place(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 class Trigger(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """When something begins, once. Exactly one of the keys before `delay_s` is given.
 
-    A speed or a gap is passed: it was on the other side of the limit before. A gap is that to whom the vehicle follows.
+    What is so when it is first looked at begins at once; only `below_mps` waits until that speed was driven. A gap is
+    that to whom the vehicle follows.
     """
 
     at_s: Seconds | None = None
@@ -92,7 +93,9 @@ class Trigger(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """
         given = [name for name in _ONSETS if getattr(self, name) is not None]
         if len(given) != 1:
-            raise ValueError(f"{' and '.join(given) or 'no onset'} given, must be exactly one of {', '.join(_ONSETS)}")
+            raise ValueError(
+                f"{' and '.join(given) or 'no trigger'} given, must be exactly one of {', '.join(_ONSETS)}"
+            )
 
 
 class Onset(Trigger, frozen=True, kw_only=True, forbid_unknown_fields=True):

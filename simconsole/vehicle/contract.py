@@ -22,10 +22,26 @@ RELEASED: Final = VehicleCommand(*(0.0,) * len(VehicleCommand._fields))._replace
 
 def problems(platform: Platform) -> list[str]:
     """Return what is wrong with a vehicle that was built at rest, nothing where it keeps the contract."""
-    return list(_shape(platform)) or list(_behaviour(platform))
+    return list(shape(platform)) or list(_behaviour(platform))
 
 
-def _shape(platform: Platform) -> Iterator[str]:
+def shape(platform: Platform) -> Iterator[str]:
+    """Yield what is wrong with a vehicle before it is ever stepped."""
+    if not isinstance(platform, Platform):
+        yield f"{type(platform).__name__}: a Platform"
+        return
+    if not isinstance(platform.initial_vehicle, VehicleState):
+        yield "initial_vehicle: a VehicleState"
+        return
+    if not hasattr(platform.state, "_fields"):
+        yield "state: a NamedTuple of floats"
+        return
+    for name in ("parameters", "ground"):
+        row = getattr(platform, name)
+        if not isinstance(row, np.ndarray) or row.dtype != np.float64 or row.ndim != 1:
+            yield f"{name}: a float64 array of one dimension"
+    if not callable(platform.step):
+        yield "step: a function"
     width, columns = len(platform.initial_state), Part(platform.state).width
     if width != columns:
         yield f"initial_state: {width} values, {columns} columns"

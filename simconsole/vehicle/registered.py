@@ -5,8 +5,9 @@ from importlib.metadata import entry_points
 from typing import Final, NamedTuple
 
 from simconsole.profiles.vehicle import OwnProfile
-from simconsole.values.errors import ProfileError
+from simconsole.values.errors import ProfileError, SimConsoleError, one_line
 from simconsole.values.platform import Ground, Platform, Pose
+from simconsole.vehicle.contract import shape
 
 GROUP: Final = "simconsole.vehicles"
 
@@ -46,8 +47,8 @@ def registered(kind: str) -> OwnVehicle:
         raise ProfileError(f"vehicle: kind: value {kind}: one of {', '.join(sorted(found))}, as packages register them")
     try:
         vehicle = found[kind].load()
-    except ImportError as error:
-        raise ProfileError(f"vehicle: kind: value {kind}: {found[kind].value}: {error}") from error
+    except Exception as error:  # whatever a stranger's module does when it is loaded
+        raise ProfileError(f"vehicle: kind: value {kind}: {found[kind].value}: {one_line(error)}") from error
     if not isinstance(vehicle, OwnVehicle):
         raise ProfileError(f"vehicle: kind: value {kind}: {found[kind].value}: an OwnVehicle")
     return vehicle
@@ -57,7 +58,7 @@ def build_own(profile: OwnProfile, pose: Pose, ground: Ground, vehicle: OwnVehic
     """Return a vehicle of another package, or `vehicle`, at rest at `pose`.
 
     Raises:
-        ProfileError: there is none, or a parameter is unknown or out of its bounds.
+        ProfileError: there is none, a parameter is unknown or out of its bounds, or what is built is no platform.
     """
     own = registered(profile.kind) if vehicle is None else vehicle
     values = dict(profile.parameters)
@@ -72,4 +73,13 @@ def build_own(profile: OwnProfile, pose: Pose, ground: Ground, vehicle: OwnVehic
                     f"vehicle: parameters: {name}: value {value:g}: {bounds.lowest:g} to {bounds.highest:g}"
                 )
         values = {name: values.get(name, bounds.default) for name, bounds in own.parameters.items()}
-    return own.build(OwnSettings(profile, values, pose, ground))
+    try:
+        platform = own.build(OwnSettings(profile, values, pose, ground))
+        wrong = next(shape(platform), None)
+    except SimConsoleError:
+        raise
+    except Exception as error:  # whatever a stranger's function does
+        raise ProfileError(f"vehicle: kind: value {profile.kind}: {one_line(error)}") from error
+    if wrong is not None:
+        raise ProfileError(f"vehicle: kind: value {profile.kind}: {wrong}")
+    return platform

@@ -117,7 +117,7 @@ def _indented(text: str) -> str:
 @pytest.mark.parametrize(
     ("fault", "message"),
     [
-        ("{kind: unplug, device: wheel}", ": no onset given, must be exactly one of at_s"),
+        ("{kind: unplug, device: wheel}", ": no trigger given, must be exactly one of at_s"),
         ("{kind: unplug, device: wheel, at_s: 1, on_mode: manual}", ": at_s and on_mode given"),
         (
             "{kind: unplug, device: seat, at_s: 1}",

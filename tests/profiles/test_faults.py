@@ -14,7 +14,7 @@ def told(fault: str) -> str:
 
 def test_a_fault_begins_once() -> None:
     assert "faults[0]" in told("{kind: unplug, device: wheel}")
-    assert "no onset given, must be exactly one of at_s, at_distance_m, near, above_mps, " in told(
+    assert "no trigger given, must be exactly one of at_s, at_distance_m, near, above_mps, " in told(
         "{kind: unplug, device: wheel, for_s: 3}"
     )
     assert "at_s and on_mode given, must be exactly one" in told(

@@ -2,14 +2,19 @@
 
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
+from simconsole.profiles.files.vehicle_files import load_vehicle
 from simconsole.profiles.vehicle import OwnProfile
 from simconsole.values.errors import ProfileError
-from simconsole.values.platform import Ground, Pose
-from simconsole.vehicle.registered import build_own, registered
+from simconsole.values.platform import Ground, Platform, Pose
+from simconsole.vehicle.platforms import build
+from simconsole.vehicle.registered import OwnVehicle, build_own, registered
 from tests.drives.console import simconsole as command
 
 LEVEL = Ground(friction=1.0, slope_x=0.0, slope_y=0.0)
@@ -62,5 +67,53 @@ def test_what_is_not_registered_is_refused_by_name(tmp_path: Path, monkeypatch: 
         build_own(OwnProfile(kind="nobody"), Pose(0.0, 0.0, 0.0), LEVEL)
     installed(tmp_path)
     monkeypatch.syspath_prepend(str(tmp_path))
-    with pytest.raises(ProfileError, match="kind: value quick: quick:VEHICLE: No module named"):
+    with pytest.raises(ProfileError, match="kind: value quick: quick:VEHICLE: ModuleNotFoundError: No module named"):
         registered("quick")
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("raise RuntimeError('no\\nlicence')", "quick:VEHICLE: RuntimeError: no licence"),
+        ("def (", "quick:VEHICLE: SyntaxError: "),
+        ("OTHER = 1", "quick:VEHICLE: AttributeError: "),
+        ("VEHICLE = 1", "quick:VEHICLE: an OwnVehicle"),
+    ],
+)
+def test_what_cannot_be_loaded_is_one_line(
+    text: str, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    installed(tmp_path)
+    (tmp_path / "quick.py").write_text(text)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.delitem(sys.modules, "quick", raising=False)
+    with pytest.raises(ProfileError, match=f"kind: value quick: {told}") as error:
+        registered("quick")
+    assert "\n" not in str(error.value)
+    sys.modules.pop("quick", None)
+
+
+def ball(**other: Any) -> Platform:
+    return build(load_vehicle("ball"), Pose(0.0, 0.0, 0.0), LEVEL)._replace(**other)
+
+
+def fails() -> Platform:
+    raise KeyError("mass")
+
+
+@pytest.mark.parametrize(
+    ("built", "told"),
+    [
+        (fails, "KeyError: 'mass'"),
+        (lambda: None, "NoneType: a Platform"),
+        (lambda: ball(initial_state=(0.0,)), "initial_state: 1 values"),
+        (lambda: ball(state=float), "state: a NamedTuple of floats"),
+        (lambda: ball(initial_vehicle=(0.0,)), "initial_vehicle: a VehicleState"),
+        (lambda: ball(parameters=np.zeros(3, dtype=int)), "parameters: a float64 array of one dimension"),
+        (lambda: ball(wheelbase_m=0.0), "wheelbase_m: not above 0"),
+    ],
+)
+def test_what_is_no_platform_is_one_line(built: Callable[[], Platform], told: str) -> None:
+    own = OwnVehicle(parameters=None, build=lambda settings: built())
+    with pytest.raises(ProfileError, match=rf"^vehicle: kind: value quick: {told}"):
+        build_own(OwnProfile(kind="quick"), Pose(0.0, 0.0, 0.0), LEVEL, own)

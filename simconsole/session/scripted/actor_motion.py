@@ -108,13 +108,9 @@ class MovingActor:
 
     def step(self, period_s: float) -> None:
         """Move on by a period."""
-        before = self.pose
         self._time_s += period_s
         if self._trajectory is not None and self._follow(*self._trajectory):
-            dx, dy = self.pose.x_m - before.x_m, self.pose.y_m - before.y_m
-            moved_m = (dx * dx + dy * dy) ** 0.5
-            self.speed_mps = self._goal_mps = moved_m / period_s
-            self.distance_m += moved_m
+            self.distance_m += self.speed_mps * period_s
             return
         slower = self.speed_mps
         self.speed_mps = approach(slower, self._goal_mps, self._accel_mps2 * period_s)
@@ -160,7 +156,10 @@ class MovingActor:
         return Pose(place.x_m - left_m * way.sin, place.y_m + left_m * way.cos, wrap_angle(place.yaw_rad + turned))
 
     def _follow(self, vertices: tuple[Vertex, ...], began_s: float) -> bool:
-        """Move along a trajectory; False once it has ended: then it goes straight on."""
+        """Move along a trajectory with the speed of its segment; False once it has ended: then it goes straight on.
+
+        It may begin elsewhere than where the actor is: nobody drives that jump.
+        """
         time_s = self._time_s - began_s
         if time_s < vertices[0].time_s:
             return False
@@ -171,6 +170,7 @@ class MovingActor:
         one, two = vertices[after - 1], vertices[after]
         part = (time_s - one.time_s) / (two.time_s - one.time_s)
         dx, dy = two.x_m - one.x_m, two.y_m - one.y_m
+        self.speed_mps = self._goal_mps = (dx * dx + dy * dy) ** 0.5 / (two.time_s - one.time_s)
         yaw_rad = self.pose.yaw_rad if dx == 0.0 == dy else atan2(dy, dx)
         if one.yaw_deg is not None:
             yaw_rad = one.yaw_deg * RAD_PER_DEG

@@ -70,6 +70,16 @@ def test_a_trajectory_is_kept_to_the_time_and_left_straight_on() -> None:
     assert moving.speed_mps == pytest.approx(5.0)
 
 
+def test_a_jump_to_a_trajectory_is_no_speed() -> None:
+    moving = actor(speed_kmh=36)
+    way = (Vertex(time_s=0.0, x_m=500.0, y_m=2.0), Vertex(time_s=1.0, x_m=503.0, y_m=6.0))
+    moving.begin(Act(at_s=0.0, trajectory=way))
+    moving.step(PERIOD_S)
+    assert moving.pose.x_m == pytest.approx(500.12)
+    assert moving.speed_mps == moving.box().speed_mps == pytest.approx(5.0)
+    assert moving.distance_m == pytest.approx(0.2)
+
+
 def test_who_has_collided_only_comes_to_rest() -> None:
     moving = actor(speed_kmh=36)
     moving.crash(-2.0)

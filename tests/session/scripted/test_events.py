@@ -119,7 +119,7 @@ def test_inputs_that_do_not_fit_are_refused(text: str, told: str) -> None:
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("events: [{event: mark}]\n", "no onset given, must be exactly one of at_s"),
+        ("events: [{event: mark}]\n", "no trigger given, must be exactly one of at_s"),
         ("events: [{event: mark, at_s: 1, above_mps: 2}]\n", "at_s and above_mps given"),
         ("events: [{event: explode, at_s: 1}]\n", 'value "explode"'),
         ("actors: [{name: a}]\n", "gap_m, or x_m and y_m, must be given"),
