@@ -21,7 +21,7 @@ from simconsole.session.autopilot_program import own_token
 from simconsole.session.camera_worker import CameraWorker
 from simconsole.session.sumo.sumo_memory import signal_bytes, signals_within
 from simconsole.session.sumo.sumo_worker import NAME as SUMO
-from simconsole.session.sumo.sumo_worker import SumoWorker
+from simconsole.session.sumo.sumo_worker import sumo_worker
 from simconsole.session.traffic_source import ShowRoadUsers, TrafficSource, ego_box
 from simconsole.session.view.external_view import display_settings
 from simconsole.session.view.view_job import save_view_job, view_job
@@ -265,40 +265,13 @@ def worker_specs(
     """
     outputs, tick_hz, bridge = resolved.session.outputs, console.tick_hz, resolved.session.outputs.bridge
     has_bridge, has_can = outputs.bridge is not None, outputs.can is not None
-    traffic = resolved.session.environment.traffic
-    has_traffic = traffic is not None
-    workers: dict[str, Worker] = {}
-    if traffic is not None and traffic.sumo is not None and isinstance(resolved.world, RoadsProfile):
-        workers[SUMO] = SumoWorker(
-            traffic=traffic,
-            world=resolved.world,
-            tick_hz=tick_hz,
-            ego=ego_box(console.platform.initial_vehicle, console.platform),
-            duration_s=resolved.session.scenario.duration_s,
-        )
-    if outputs.bridge is not None:
-        workers["bridge"] = BridgeWorker(
-            profile=outputs.bridge,
-            tick_hz=tick_hz,
-            drive=drive,
-            bundle=str(bundle.absolute()),
-            steering=steering_limit(resolved.session.features.control, console.platform.wheelbase_m),
-            display=display_settings(resolved) if outputs.bridge.external_view else None,
-            has_traffic=has_traffic,
-            world=resolved.world,
-            vehicle=resolved.vehicle if isinstance(resolved.vehicle, TurtlebotProfile) else None,
-        )
-    if bridge is not None and gives_advice(resolved.session) and resolved.world is not None:
-        workers["advice"] = AdviceWorker(
-            world=resolved.world,
-            vehicle=resolved.vehicle,
-            drive=drive,
-            address=ADDRESS,
-            token=own_token(resolved.session),
-            certificate=bridge.certificate,
-            namespace=bridge.namespace,
-            rename=bridge.rename,
-        )
+    has_traffic = resolved.session.environment.traffic is not None
+    made = {
+        SUMO: sumo_worker(resolved, tick_hz, ego_box(console.platform.initial_vehicle, console.platform)),
+        "bridge": _bridge_worker(resolved, console, bundle, drive),
+        "advice": _advice_worker(resolved, drive),
+    }
+    workers: dict[str, Worker] = {name: worker for name, worker in made.items() if worker is not None}
     if outputs.can is not None:
         from simconsole.canbus.messages import wheel_columns
 
@@ -339,6 +312,39 @@ def worker_specs(
             has_traffic=has_traffic,
         )
     return [WorkerSpec.of(name, worker) for name, worker in workers.items()]
+
+
+def _bridge_worker(resolved: ResolvedSession, console: Console, bundle: Path, drive: str) -> BridgeWorker | None:
+    session, bridge = resolved.session, resolved.session.outputs.bridge
+    if bridge is None:
+        return None
+    return BridgeWorker(
+        profile=bridge,
+        tick_hz=console.tick_hz,
+        drive=drive,
+        bundle=str(bundle.absolute()),
+        steering=steering_limit(session.features.control, console.platform.wheelbase_m),
+        display=display_settings(resolved) if bridge.external_view else None,
+        has_traffic=session.environment.traffic is not None,
+        world=resolved.world,
+        vehicle=resolved.vehicle if isinstance(resolved.vehicle, TurtlebotProfile) else None,
+    )
+
+
+def _advice_worker(resolved: ResolvedSession, drive: str) -> AdviceWorker | None:
+    bridge = resolved.session.outputs.bridge
+    if bridge is None or resolved.world is None or not gives_advice(resolved.session):
+        return None
+    return AdviceWorker(
+        world=resolved.world,
+        vehicle=resolved.vehicle,
+        drive=drive,
+        address=ADDRESS,
+        token=own_token(resolved.session),
+        certificate=bridge.certificate,
+        namespace=bridge.namespace,
+        rename=bridge.rename,
+    )
 
 
 def bridge_address(folder: Path, alive: Callable[[], bool], patience_s: float = START_PATIENCE_S) -> str:

@@ -7,7 +7,7 @@ import logging
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import msgspec
 import numpy as np
@@ -24,6 +24,9 @@ from simconsole.world.roads.road_world import roads_of
 from simconsole.world.roads.running import NONE_RUNNING, RunningNow
 from simconsole.world.sumo_traffic.sumo_traffic import SumoTraffic, Surroundings
 from simconsole.world.traffic.road_users import RECORD_WIDTH, Box, to_record
+
+if TYPE_CHECKING:
+    from simconsole.tick.assembly import ResolvedSession
 
 LOOK_S: Final = 0.002
 MOST_AT_ONCE: Final = 5
@@ -94,6 +97,16 @@ class SumoWorker(Worker, frozen=True, kw_only=True):
                 _step(memory, traffic, record)
                 if traffic.lost is None:
                     answers.put(done)
+
+
+def sumo_worker(resolved: "ResolvedSession", tick_hz: int, ego: Box) -> SumoWorker | None:
+    """Return the worker of a session whose vehicle starts at `ego`, None where it has no SUMO."""
+    traffic, world = resolved.session.environment.traffic, resolved.world
+    if traffic is None or traffic.sumo is None or not isinstance(world, RoadsProfile):
+        return None
+    return SumoWorker(
+        traffic=traffic, world=world, tick_hz=tick_hz, ego=ego, duration_s=resolved.session.scenario.duration_s
+    )
 
 
 class _Answers:

@@ -10,6 +10,7 @@ from simconsole.processes.worker import WorkerSpec, load_worker
 from simconsole.profiles.files.world_files import load_world
 from simconsole.profiles.traffic import SumoProfile, TrafficProfile
 from simconsole.profiles.world import RoadsProfile
+from simconsole.session.resolution import load_session, resolve
 from simconsole.session.sumo import sumo_worker
 from simconsole.session.sumo.sumo_memory import How, SumoMemory
 from simconsole.session.sumo.sumo_port import SumoPort
@@ -160,6 +161,17 @@ def test_a_sumo_that_crashed_while_it_loaded_is_not_started_again(
     assert len(starts) == 1
     with pytest.raises(ProfileError, match=r"sumo: SUMO: its process has ended: a simulation that starts"):
         core.port.wait(lambda: True)
+
+
+def test_a_session_has_it_where_it_names_sumo() -> None:
+    resolved = resolve(load_session("demo"))
+    assert sumo_worker.sumo_worker(resolved, HZ, START) is None
+    environment = msgspec.structs.replace(resolved.session.environment, traffic=TrafficProfile(sumo=SumoProfile()))
+    session = msgspec.structs.replace(resolved.session, environment=environment)
+    with_sumo = msgspec.structs.replace(resolved, session=session, world=WORLD)
+    found = sumo_worker.sumo_worker(with_sumo, HZ, START)
+    assert isinstance(found, SumoWorker)
+    assert (found.traffic, found.world, found.tick_hz, found.ego) == (environment.traffic, WORLD, HZ, START)
 
 
 def test_its_configuration_travels_as_json(tmp_path: Path) -> None:
