@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Final
 
+from tests.patience import PATIENCE_S
+
 SIZE: Final = (1366, 768)
 
 
@@ -26,9 +28,9 @@ def x_server(size: tuple[int, int] = SIZE) -> Iterator[str]:
         server.wait(20.0)
 
 
-def hands(display: str, *words: str) -> str:
-    """Do something at the keyboard, as xdotool calls it; return what it prints."""
+def hands(display: str, *words: str, sure: bool = True) -> str:
+    """Do something at the keyboard, as xdotool calls it; return what it prints; unless `sure`, it may fail."""
     environment = {**os.environ, "DISPLAY": display}
     return subprocess.run(
-        ["xdotool", *words], env=environment, capture_output=True, text=True, check=True, timeout=20.0
+        ["xdotool", *words], env=environment, capture_output=True, text=True, check=sure, timeout=PATIENCE_S
     ).stdout
