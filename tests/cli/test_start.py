@@ -4,6 +4,7 @@ import io
 import os
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -12,7 +13,6 @@ from simconsole.cli.start import ask, chosen, offered
 from simconsole.recording.bundles.bundle import LOG, open_bundle
 from simconsole.recording.bundles.replay_bundle import recorded_session
 from simconsole.session.resolution import load_session, resolve
-from simconsole.values.signals import Mode
 from tests.hud.window.x_server import hands, x_server
 from tests.patience import PATIENCE_S, wait_until
 
@@ -100,7 +100,7 @@ def test_a_terminal_is_asked_line_by_line(
 
 
 def test_without_a_wheel_a_display_offers_the_keyboard_and_drives(tmp_path: Path) -> None:
-    """The whole way, by a person's hands on a real X server: Return, into gear, the throttle held, End."""
+    """The whole way, by a person's hands on a real X server: Return, the brake, into gear, the throttle held, End."""
     bundle = tmp_path / "bundle"
     session = tmp_path / "session.yaml"
     session.write_text(SESSION)
@@ -109,13 +109,21 @@ def test_without_a_wheel_a_display_offers_the_keyboard_and_drives(tmp_path: Path
         environment = {**kept, "DISPLAY": display, "XDG_STATE_HOME": str(tmp_path)}
         command = [sys.executable, "-m", "simconsole", "drive", str(session), "--out", str(bundle), "--no-pack"]
         with subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True) as program:
+
+            def turn_and(*words: str) -> bool:
+                turned_to_the_window(display, *words)
+                assert program.poll() is None, "the drive has ended"
+                return True
+
             try:
-                wait_until(lambda: at_the_window(display, "key", "Return") and (bundle / LOG).exists(), "a log")
-                # Before the keyboard is heard the gear would be asked for in vain.
-                wait_until(lambda: at_the_window(display) and by_hand(bundle), "the keyboard is heard")
-                hands(display, "key", "e", "keydown", "w")
-                recorded(bundle, 4_500_000)
-                hands(display, "keyup", "w", "key", "End")
+                wait_until(lambda: turn_and("key", "Return") and (bundle / LOG).exists(), "a log")
+                wait_until(lambda: turn_and("keydown", "s") and newest(bundle, "driver.brake") == 1.0, "the brake")
+                # A gear is asked for once only: each further press would be a gear more.
+                hands(display, "keyup", "s", "key", "e")
+                far = partial(newest, bundle, "vehicle.distance_m")
+                wait_until(lambda: turn_and("keydown", "w") and far() > 1.0, "the car moves")
+                hands(display, "keyup", "w")
+                wait_until(lambda: turned_to_the_window(display, "key", "End") and program.poll() is not None, "End")
                 _, told = program.communicate(timeout=PATIENCE_S)
             finally:
                 program.kill()
@@ -126,20 +134,13 @@ def test_without_a_wheel_a_display_offers_the_keyboard_and_drives(tmp_path: Path
     assert driven.log.table().column("vehicle.distance_m")[-1] > 1.0
 
 
-def by_hand(bundle: Path) -> bool:
-    """Whether the person drives, in the newest tick on the disk."""
-    modes = open_bundle(bundle).log.table(("arbitration.mode",)).vectors
-    return len(modes) > 0 and modes[-1, 0] == Mode.MANUAL
+def newest(bundle: Path, column: str) -> float:
+    """Return a column's value in the newest tick on the disk, 0.0 while there is none."""
+    vectors = open_bundle(bundle).log.table((column,)).vectors
+    return float(vectors[-1, 0]) if len(vectors) else 0.0
 
 
-def recorded(bundle: Path, size_bytes: int) -> None:
-    """Wait until the drive's log is longer than it is now by as much."""
-    log = bundle / LOG
-    before = log.stat().st_size
-    wait_until(lambda: log.stat().st_size > before + size_bytes, f"{size_bytes} bytes more of log")
-
-
-def at_the_window(display: str, *words: str) -> bool:
+def turned_to_the_window(display: str, *words: str) -> bool:
     """Turn to the window that there is now, if any, as somebody does who sees that it does not answer yet.
 
     The page gives way to the driver's view, and SDL may put another window in the place of its first.

@@ -14,6 +14,7 @@ from simconsole.values.kernels import put
 from simconsole.values.platform import Ground, Platform, Pose
 from simconsole.values.state_vector import LAYOUT, PLATFORM_AT
 from simconsole.vehicle.batch.fleet import Fleet
+from tests.bits import difference
 from tests.samples import Sample
 from tests.vehicle.driving import LEVEL, platform
 from tests.vehicle.fuzzing import ground
@@ -92,7 +93,7 @@ def test_a_fleet_can_be_put_back_to_try_again() -> None:
     assert (np.diff(after[2:, 3]) >= 0.0).all(), "more throttle, more speed"
     fleet.restore(before)
     fleet.step(1500)
-    assert after.tobytes() == fleet.states.tobytes()
+    assert not difference(after, fleet.states)
 
 
 def test_what_is_no_fleet_is_refused() -> None:

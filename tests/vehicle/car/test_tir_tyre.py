@@ -24,6 +24,7 @@ from simconsole.vehicle.car.pac2002 import Pac2002, Slip, coefficients, exp, pac
 from simconsole.vehicle.car.state import CarState
 from simconsole.vehicle.car.tir_tyre import make_tyre, step_on
 from simconsole.vehicle.platforms import build
+from tests.bits import difference
 from tests.samples import Sample
 from tests.vehicle.driving import IDLE, LEVEL, ORIGIN, SUBSTEPS, Drive
 
@@ -169,7 +170,7 @@ def test_plain_and_compiled_agree_to_the_bit() -> None:
         turn = rng.uniform(-0.5, 0.5)
         for drive in (slow, fast):
             drive.hold(0.06, automatic=1, gear=1, road_wheel_rad=turn, **held)
-        assert slow.row.tobytes() == fast.row.tobytes()
+        assert not difference(slow.row, fast.row)
 
 
 def rolling(vehicle: Platform, speed_mps: float) -> Drive:
@@ -214,7 +215,7 @@ def test_a_fleet_on_such_tyres_steps_as_one_car_does() -> None:
     for _ in range(300):
         fleet.step(SUBSTEPS)
         alone.tick(command)
-    assert fleet.states[1].tobytes() == alone.row[PLATFORM_AT:].tobytes()
+    assert not difference(fleet.states[1], alone.row[PLATFORM_AT:])
 
 
 def test_other_coefficients_are_other_code() -> None:
