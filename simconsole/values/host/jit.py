@@ -18,6 +18,7 @@ from enum import EnumType, Flag
 from functools import cache, partial
 from importlib import import_module
 from pathlib import Path
+from secrets import token_hex
 from typing import Any, Final, TypeVar
 
 import numpy as np
@@ -221,14 +222,28 @@ def _cached(twin: types.FunctionType, name: str, **options: bool) -> Any:
     source.touch()
     twin.__code__ = twin.__code__.replace(co_filename=str(source), co_firstlineno=1)
     numba.config.CACHE_DIR = str(folder)
-    dispatcher = numba.njit(cache=True, **{**_OPTIONS, **options})(twin)
-    dispatcher._cache._index_key = lambda signature, codegen: (signature, codegen.magic_tuple())
+    dispatcher = numba.njit(cache=True, **{**_OPTIONS, **options})(_named(twin, name))
+    kept = dispatcher._cache
+    kept._index_key = lambda signature, codegen: (signature, codegen.magic_tuple())
+    # numba numbers the files of a folder, one for each signature. Two processes that compile at once, each for another
+    # signature, would write the same file, and the index might tell that it is for the one whose code it is not.
+    kept._cache_file._data_name_pattern = f"{twin.__name__}-{token_hex(8)}.{{number:d}}.nbc"
     return dispatcher
 
 
 @cache
 def _inner(function: Callable[..., Any]) -> Any:
-    return _numba().njit(forceinline=True, **_OPTIONS)(_twin(function))
+    return _numba().njit(forceinline=True, **_OPTIONS)(_named(_twin(function), digest(function)))
+
+
+def _named(twin: types.FunctionType, name: str) -> types.FunctionType:
+    """Give a function a name of its own, for the linker.
+
+    numba tells functions of one name apart by a number, counted in each process anew. Of two in one process whose code
+    comes from the cache, compiled by two others, it may be the same: who calls the second is then linked to the first.
+    """
+    twin.__qualname__ = f"{twin.__qualname__}_{name}"
+    return twin
 
 
 def _twin(function: Callable[..., Any]) -> types.FunctionType:
