@@ -1,5 +1,6 @@
 """A vehicle beside its path, for a learner that looks after every step: the place is followed, never searched for."""
 
+import math
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -58,7 +59,7 @@ def path_of(route: Route) -> Path:
     count = max(2, round(route.length_m / STEP_M))
     cell_m = route.length_m / count
     points = [route.at(number * cell_m) for number in range(count)]
-    cells = [(p.x_m, p.y_m, np.cos(p.yaw_rad), np.sin(p.yaw_rad), p.yaw_rad, p.curvature_1pm) for p in points]
+    cells = [(p.x_m, p.y_m, math.cos(p.yaw_rad), math.sin(p.yaw_rad), p.yaw_rad, p.curvature_1pm) for p in points]
     return Path(np.array(cells), cell_m, float(route.closed))
 
 

@@ -28,7 +28,10 @@ def test_latched_topics_reach_every_later_subscriber() -> None:
             one.do("publish", name="/map", data="third", latched=True)  # while nobody here listens
         with client(console.url) as late:
             subscribe(late)
-            assert {late.message("/map")["data"] for _ in range(2)} == {"third", "other"}
+            heard = {late.message("/map")["data"] for _ in range(2)}
+            if "second" in heard:  # the graph had not yet brought the third to the bridge
+                heard = heard - {"second"} | {late.message("/map")["data"]}
+            assert heard == {"third", "other"}
             two.do("destroy", kind="publisher", name="/map")
 
             def is_gone() -> bool:

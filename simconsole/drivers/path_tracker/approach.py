@@ -9,6 +9,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from simconsole.values.array_functions import exponential
 from simconsole.values.kernels import clip
 from simconsole.values.units import RAD_PER_DEG
 
@@ -69,7 +70,7 @@ class Approach(NamedTuple):
         bracket = self.offset_m + (self.rate + self.bend_1pm * x) * x
         slope = self.rate + 2.0 * self.bend_1pm * x
         added = 2.0 * self.bend_1pm - 2.0 * slope / self.length_m + bracket / self.length_m**2
-        return np.asarray(added * np.exp(-x / self.length_m))
+        return np.asarray(added * exponential(-x / self.length_m))
 
 
 ON_PATH: Final = Approach(0.0, _SHORTEST_M, 0.0, 0.0)

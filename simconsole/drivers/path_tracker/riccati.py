@@ -1,11 +1,10 @@
-"""Discrete linear-quadratic design in plain numpy: exponential, Riccati equation, preview gains."""
+"""Discrete linear-quadratic design in sums of one order: exponential, Riccati equation, preview gains."""
 
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from simconsole.drivers.path_tracker.matrices import Array, product, solved
 
 _TERMS: Final = 12
 _DOUBLINGS: Final = 40
@@ -27,10 +26,10 @@ def exponential(matrix: Array) -> Array:
     scaled = matrix / 2.0**squarings
     result = term = np.eye(len(matrix))
     for order in range(1, _TERMS + 1):
-        term = term @ scaled / order
+        term = product(term, scaled) / order
         result = result + term
     for _ in range(squarings):
-        result = result @ result
+        result = product(result, result)
     return result
 
 
@@ -51,14 +50,14 @@ def riccati(a: Array, b: Array, q: Array, r: float) -> Array:
     Raises ValueError when it does not settle: the pair is not stabilisable.
     """
     eye = np.eye(len(a))
-    g, h = b @ b.T / r, q
+    g, h = product(b, b.T) / r, q
     for _ in range(_DOUBLINGS):
-        inner = np.linalg.solve(eye + g @ h, np.hstack((a, g)))
+        inner = solved(eye + product(g, h), np.hstack((a, g)))
         wa, wg = inner[:, : len(a)], inner[:, len(a) :]
         if not float(np.abs(inner).max()) < _DIVERGED:
             break
-        after = h + a.T @ h @ wa
-        g, a = g + a @ wg @ a.T, a @ wa
+        after = h + product(a.T, h, wa)
+        g, a = g + product(a, wg, a.T), product(a, wa)
         moved, h = float(np.abs(after - h).max()), 0.5 * (after + after.T)
         if moved <= _SETTLED * float(np.abs(h).max()):
             return h
@@ -71,11 +70,11 @@ def design(a: Array, b: Array, d: Array, q: Array, r: float, steps: int) -> Gain
     Shapes: a [n, n], b and d [n, 1]. Preview by the closed loop's costate (Tomizuka, J. Dyn. Sys. 97(2), 1975).
     """
     p = riccati(a, b, q, r)
-    weight = r + float((b.T @ p @ b)[0, 0])
-    feedback = (b.T @ p @ a / weight)[0]
-    loop = a - b @ feedback[None, :]
-    costate, preview = p @ d, []
+    weight = r + float(product(b.T, p, b)[0, 0])
+    feedback = (product(b.T, p, a) / weight)[0]
+    loop = a - b * feedback
+    costate, preview = product(p, d), []
     for _ in range(steps):
-        preview.append(float((b.T @ costate)[0, 0]) / weight)
-        costate = loop.T @ costate
+        preview.append(float(product(b.T, costate)[0, 0]) / weight)
+        costate = product(loop.T, costate)
     return Gains(feedback, np.array(preview))

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simconsole.drivers.path_tracker.tracker_settings import Comfort
+from simconsole.values.array_functions import cube_root
 from simconsole.world.route import Route
 
 Array = NDArray[np.float64]
@@ -86,7 +87,7 @@ def plan_speed(course: Route, comfort: Comfort, top_mps: float | None = None) ->
     top = (limits if top_mps is None else np.full(count, top_mps)) - comfort.margin_mps
     bend = np.sqrt(comfort.lateral_mps2 / np.maximum(np.abs(curvature), 1e-9))
     bending = np.abs(_shifted(curvature, -1, closed) - _shifted(curvature, 1, closed)) / (2.0 * step)
-    ramp = np.cbrt(comfort.lateral_jerk_mps3 / np.maximum(bending, 1e-9))
+    ramp = cube_root(comfort.lateral_jerk_mps3 / np.maximum(bending, 1e-9))
     speed = np.minimum(top, np.minimum(bend, ramp))
     # The smoothing below averages over a bend's neighbourhood: there, too, no speed may exceed the bend's own.
     reach = max(1, round(0.25 * comfort.smoothing_s * float(speed.min()) / step))

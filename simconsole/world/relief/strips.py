@@ -6,6 +6,8 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from simconsole.values.array_functions import heading
+
 Array = NDArray[np.float64]
 
 STEP_M: Final = 1.0
@@ -80,7 +82,7 @@ def banks(line: Array, most: float, full_radius_m: float, fade_m: float) -> Arra
     """
     window = max(3, 2 * round(0.5 * fade_m / STEP_M) + 1)
     ahead = np.gradient(line[:, :2], axis=0)
-    yaw = np.unwrap(np.arctan2(ahead[:, 1], ahead[:, 0]))
+    yaw = np.unwrap(heading(ahead[:, 1], ahead[:, 0]))
     curvature = _mean(np.gradient(yaw) / STEP_M, window)
     way = np.arange(len(line)) * STEP_M
     near = np.minimum(way, way[-1] - way) / max(fade_m, STEP_M)

@@ -7,6 +7,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from simconsole.values.array_functions import heading
 from simconsole.values.kernels import Row, kernel
 from simconsole.world.roads.road_map import Array, Lane
 
@@ -58,7 +59,7 @@ class LaneIndex:
         self.segments: Array = np.array(rows).reshape(-1, 6)
         self._owners = owners
         self._widths = [lanes[place].width_m for place in owners]
-        self._directions = np.arctan2(self.segments[:, 3], self.segments[:, 2]).tolist()
+        self._directions = heading(self.segments[:, 3], self.segments[:, 2]).tolist()
         self._starts_m = self.segments[:, 5].tolist()
         self._grid, self._starts, self._items = _grid(self.segments)
         self._search = search

@@ -12,6 +12,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from simconsole.values.array_functions import heading as heading_of
 from simconsole.values.platform import Pose
 from simconsole.world.path_geometry import Piece, travel
 
@@ -140,7 +141,7 @@ def _driven(points: Array, limits: Array) -> list[FittedPiece]:
     """Return pieces of linear curvature along points, each from one to the next."""
     chords = np.diff(points, axis=0)
     lengths = np.hypot(*chords.T)
-    headings = np.unwrap(np.arctan2(chords[:, 1], chords[:, 0]))
+    headings = np.unwrap(heading_of(chords[:, 1], chords[:, 0]))
     between = 0.5 * (lengths[1:] + lengths[:-1])
     curvature = np.concatenate(((0.0,), np.diff(headings) / between, (0.0,))).tolist()
     yaw = np.concatenate((headings[:1], 0.5 * (headings[1:] + headings[:-1]), headings[-1:])).tolist()

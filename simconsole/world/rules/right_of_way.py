@@ -12,6 +12,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from simconsole.values.array_functions import cosine as cosine_of
+from simconsole.values.array_functions import sine as sine_of
 from simconsole.values.signals import FAR, SignalState
 from simconsole.world.people.footways import KERB_M
 from simconsole.world.roads.road_map import Array
@@ -134,7 +136,7 @@ def _somebody_crosses(foot: Foot, people: Array) -> bool:
     cosine, sine = (to_x - x) / length, (to_y - y) / length
     along = (people[:, 2] - x) * cosine + (people[:, 3] - y) * sine
     aside = np.abs((people[:, 3] - y) * cosine - (people[:, 2] - x) * sine)
-    forth = np.cos(people[:, 4]) * cosine + np.sin(people[:, 4]) * sine
+    forth = cosine_of(people[:, 4]) * cosine + sine_of(people[:, 4]) * sine
     walked = np.where(forth > 0.0, along, length - along)
     passed = np.where(forth > 0.0, foot.high_m, length - foot.low_m) + _CLEAR_M
     steps = (people[:, 5] > _STEPS_MPS) & (walked > _AT_KERB_M - KERB_M) & (np.abs(forth) > _ALIGNED)
@@ -182,7 +184,7 @@ def _on_ways(watched: Watched, vehicles: Array) -> list[list[int]]:
     dy = vehicles[:, None, 3] - watched.y_m[None, :]
     along = dx * watched.cosine + dy * watched.sine
     aside = np.abs(dy * watched.cosine - dx * watched.sine)
-    aligned = np.cos(vehicles[:, None, 4]) * watched.cosine + np.sin(vehicles[:, None, 4]) * watched.sine
+    aligned = cosine_of(vehicles[:, None, 4]) * watched.cosine + sine_of(vehicles[:, None, 4]) * watched.sine
     on = (np.abs(along) <= 0.5) & (aside < _BESIDE_M) & (aligned > _ALIGNED)
     return np.argwhere(on).tolist()
 

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from simconsole.values.array_functions import cosine, sine
 from simconsole.values.trigonometry import direction
 from simconsole.world.roads.road_map import Array
 from simconsole.world.traffic.road_users import Box
@@ -40,7 +41,7 @@ def middles_of(bumpers: Array, lengths_m: Array, moved_m: Moved) -> Array:
     """Return the middles and yaws, float64 [N, 3], of vehicles by their bumpers, float64 [N, 3], and lengths [N]."""
     yaws = np.radians((270.0 - bumpers[:, 2]) % 360.0 - 180.0)
     found = np.empty((len(bumpers), 3))
-    found[:, 0] = bumpers[:, 0] - 0.5 * lengths_m * np.cos(yaws) - moved_m[0]
-    found[:, 1] = bumpers[:, 1] - 0.5 * lengths_m * np.sin(yaws) - moved_m[1]
+    found[:, 0] = bumpers[:, 0] - 0.5 * lengths_m * cosine(yaws) - moved_m[0]
+    found[:, 1] = bumpers[:, 1] - 0.5 * lengths_m * sine(yaws) - moved_m[1]
     found[:, 2] = yaws
     return found

@@ -6,6 +6,8 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from simconsole.values.array_functions import cosine as cosine_of
+from simconsole.values.array_functions import sine as sine_of
 from simconsole.values.kernels import Row, holding, kernel
 from simconsole.values.signals import NO_AHEAD, AheadInput
 from simconsole.values.trigonometry import direction
@@ -96,7 +98,7 @@ class Leaders:
 def _way(route: Route | None, lists: bool) -> Way:
     arrays = [np.zeros(0)] * 6
     if route is not None:
-        arrays = [route.x, route.y, np.cos(route.yaw), np.sin(route.yaw), route.s, route.curvature]
+        arrays = [route.x, route.y, cosine_of(route.yaw), sine_of(route.yaw), route.s, route.curvature]
     columns: list[Any] = [array.tolist() for array in arrays] if lists else arrays
     length_m, closed = (0.0, False) if route is None else (route.length_m, route.closed)
     x, y, cosine, sine, s, curvature = columns

@@ -13,7 +13,7 @@ from rclpy.node import Node
 
 from simconsole_controllers.pursuit import Pursuit
 
-CONNECT_S = 20.0
+CONNECT_S = 60.0  # a console that is started beside it compiles first
 STANDSTILL_MPS = 0.1  # as in the console; a car that has moved is hardly ever at 0 to the last digit again
 
 
