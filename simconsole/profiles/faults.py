@@ -4,7 +4,7 @@ A kind is a struct with its own parameters on top of `Onset`; whoever adds one a
 in faults/schedule.py, the one place that maps each kind to its layer.
 """
 
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import Annotated, Any, Final, Literal, TypeAlias
 
 import msgspec
 from msgspec import Meta, Struct
@@ -40,6 +40,9 @@ EdgeName: TypeAlias = Literal[
     "operator",
     "collision",
 ]
+
+EARLIER_PARTS: Final = {"stations": "outputs"}
+"""Names that parts of a drive had in earlier profiles and bundles, to those of now."""
 
 MAX_FAULTS = 48
 """The state vector holds the faults that are on as bits of one float64."""
@@ -245,7 +248,13 @@ class Stall(Onset, frozen=True, kw_only=True, tag_field="kind", tag="stall"):
 class Raises(Onset, frozen=True, kw_only=True, tag_field="kind", tag="raises"):
     """A part of the drive raises an exception whenever it is called."""
 
-    part: Literal["devices", "ros", "can", "stations"]
+    part: Literal["devices", "ros", "can", "outputs", "stations"]
+    """`outputs`: who reads the snapshots; `stations` is its earlier name, still read."""
+
+    def __post_init__(self) -> None:
+        """Take the earlier name of a part as the one of now."""
+        super().__post_init__()
+        msgspec.structs.force_setattr(self, "part", EARLIER_PARTS.get(self.part, self.part))
 
 
 ProcessFault: TypeAlias = Stall | Raises

@@ -77,7 +77,7 @@ CASES: Final = (
     Case("P06", "the loop stands for 15 ms", kinds.Stall, {"stall_ms": 15}, None, None, 0),
     Case("P06", "the loop stands for 50 ms", kinds.Stall, {"stall_ms": 50}, None, None, 0),
     Case("P06", "the loop stands for 500 ms", kinds.Stall, {"stall_ms": 500}, _STOP, Reason.LOOP_STALL, 250),
-    Case("P10 P12", "a display raises", kinds.Raises, {"part": "stations"}, None, None, 0),
+    Case("P10 P12", "a display raises", kinds.Raises, {"part": "outputs"}, None, None, 0),
     Case("P12", "the cockpit raises", kinds.Raises, {"part": "devices"}, _ASK, _LOST, 100),
     Case("P12", "the ROS side raises", kinds.Raises, {"part": "ros"}, _STOP, Reason.COMMANDER_LOST, 210),
 )
