@@ -216,7 +216,14 @@ class Refused(Onset, frozen=True, kw_only=True, tag_field="kind", tag="refused")
 
 
 class LateCommands(Onset, frozen=True, kw_only=True, tag_field="kind", tag="late_commands"):
-    """Commands arrive, steadily, `by_ms` older than they were."""
+    """Commands arrive, steadily, `by_ms` older than they were: their stamps say so, they act as soon as before."""
+
+    by_ms: Annotated[float, Meta(gt=0.0, le=5000.0)]
+    controller: ControllerName = "ros"
+
+
+class DelayedCommands(Onset, frozen=True, kw_only=True, tag_field="kind", tag="delayed_commands"):
+    """What is sent meanwhile arrives, and acts, `by_ms` later, in whole ticks, and is older by that."""
 
     by_ms: Annotated[float, Meta(gt=0.0, le=5000.0)]
     controller: ControllerName = "ros"
@@ -235,7 +242,7 @@ class Astray(Onset, frozen=True, kw_only=True, tag_field="kind", tag="astray"):
     controller: ControllerName = "ros"
 
 
-CommandFault: TypeAlias = Silent | Disconnected | Refused | LateCommands | NotFinite | Astray
+CommandFault: TypeAlias = Silent | Disconnected | Refused | LateCommands | DelayedCommands | NotFinite | Astray
 """Between a controller and the arbiter (faults/command_faults.py)."""
 
 
