@@ -23,8 +23,7 @@ if TYPE_CHECKING:
     from simconsole.values.own_signals import OwnSignals as OwnSignals
     from simconsole.values.signals import Mode as Mode
     from simconsole.values.state_vector import Snapshot as Snapshot
-
-__version__ = "0.1.0"
+    from simconsole.values.version import __version__ as __version__
 
 _OFFERED = {
     "Command": "cli.api.commands",
@@ -45,10 +44,11 @@ _OFFERED = {
     "OwnSignals": "values.own_signals",
     "Mode": "values.signals",
     "Snapshot": "values.state_vector",
+    "__version__": "values.version",
 }
 """Where each name of the API stands."""
 
-__all__ = ["__version__", *_OFFERED]
+__all__ = [*_OFFERED]
 
 
 def __getattr__(name: str) -> object:

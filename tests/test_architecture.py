@@ -91,7 +91,7 @@ def imports() -> dict[str, set[str]]:
     found: dict[str, set[str]] = {name: set() for name in known}
     for name, path in known.items():
         for node in ast.walk(ast.parse(path.read_text())):
-            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("simconsole."):
+            if isinstance(node, ast.ImportFrom) and f"{node.module}.".startswith("simconsole."):
                 targets = [f"{node.module}.{alias.name}" for alias in node.names]
                 found[name] |= {to if to in known else node.module or "" for to in targets}
     return found

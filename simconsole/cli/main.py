@@ -11,7 +11,6 @@ import sys
 from importlib import import_module
 from typing import Any, TextIO
 
-from simconsole import __version__
 from simconsole.cli.arguments import driving, recorded_drives, tools
 from simconsole.processes.lifetimes import (
     INTERRUPTED,
@@ -24,6 +23,7 @@ from simconsole.processes.lifetimes import (
     interrupted,
 )
 from simconsole.values.errors import SimConsoleError, one_line
+from simconsole.values.version import __version__
 
 _AT_ONCE = ("demo", "drive", "bridge", "report", "view", "pack", "unpack")
 """Commands that Ctrl-C ends at once unless a drive handles it itself: they leave nothing half made. In the others it

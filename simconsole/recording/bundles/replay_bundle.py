@@ -7,7 +7,6 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
-from simconsole import __version__
 from simconsole.profiles.files.world_files import located, with_kind
 from simconsole.profiles.strict_yaml import parse
 from simconsole.profiles.validation import convert
@@ -20,6 +19,7 @@ from simconsole.values.host import jit
 from simconsole.values.host.jit import compiled
 from simconsole.values.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE
 from simconsole.values.state_vector import TickInputs, input_vector
+from simconsole.values.version import __version__
 from simconsole.world.obstacles.striking import strike
 from simconsole.world.rules.situation import look_around
 
