@@ -11,11 +11,11 @@ if TYPE_CHECKING:
     from simconsole.cli.api.commands import go_to as go_to
     from simconsole.cli.api.commands import hold_speed as hold_speed
     from simconsole.cli.api.commands import twist as twist
-    from simconsole.cli.api.drive import Drive as Drive
-    from simconsole.cli.api.drive import DriveEvent as DriveEvent
-    from simconsole.cli.api.drive import open_drive as open_drive
     from simconsole.cli.api.environment import DrivingEnvironment as DrivingEnvironment
     from simconsole.cli.api.environment import vector_environment as vector_environment
+    from simconsole.cli.api.recorded_drive import Drive as Drive
+    from simconsole.cli.api.recorded_drive import DriveEvent as DriveEvent
+    from simconsole.cli.api.recorded_drive import open_drive as open_drive
     from simconsole.cli.api.session import Session as Session
     from simconsole.cli.api.session import check as check
     from simconsole.cli.api.session import load as load
@@ -23,8 +23,7 @@ if TYPE_CHECKING:
     from simconsole.values.own_signals import OwnSignals as OwnSignals
     from simconsole.values.signals import Mode as Mode
     from simconsole.values.state_vector import Snapshot as Snapshot
-
-__version__ = "0.1.0"
+    from simconsole.values.version import __version__ as __version__
 
 _OFFERED = {
     "Command": "cli.api.commands",
@@ -33,9 +32,9 @@ _OFFERED = {
     "go_to": "cli.api.commands",
     "hold_speed": "cli.api.commands",
     "twist": "cli.api.commands",
-    "Drive": "cli.api.drive",
-    "DriveEvent": "cli.api.drive",
-    "open_drive": "cli.api.drive",
+    "Drive": "cli.api.recorded_drive",
+    "DriveEvent": "cli.api.recorded_drive",
+    "open_drive": "cli.api.recorded_drive",
     "DrivingEnvironment": "cli.api.environment",
     "vector_environment": "cli.api.environment",
     "Session": "cli.api.session",
@@ -45,10 +44,11 @@ _OFFERED = {
     "OwnSignals": "values.own_signals",
     "Mode": "values.signals",
     "Snapshot": "values.state_vector",
+    "__version__": "values.version",
 }
 """Where each name of the API stands."""
 
-__all__ = ["__version__", *_OFFERED]
+__all__ = [*_OFFERED]
 
 
 def __getattr__(name: str) -> object:

@@ -91,7 +91,7 @@ def imports() -> dict[str, set[str]]:
     found: dict[str, set[str]] = {name: set() for name in known}
     for name, path in known.items():
         for node in ast.walk(ast.parse(path.read_text())):
-            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("simconsole."):
+            if isinstance(node, ast.ImportFrom) and f"{node.module}.".startswith("simconsole."):
                 targets = [f"{node.module}.{alias.name}" for alias in node.names]
                 found[name] |= {to if to in known else node.module or "" for to in targets}
     return found
@@ -125,7 +125,7 @@ def test_package_that_holds_both_kinds_imports_nothing_itself() -> None:
             assert list(top_level_imports(ast.parse((package / "__init__.py").read_text()))) == [], package
 
 
-class House(NamedTuple):
+class PackageCopy(NamedTuple):
     """A copy of the package in which violations can be planted."""
 
     root: Path
@@ -142,10 +142,10 @@ class House(NamedTuple):
 
 
 @pytest.fixture
-def house(tmp_path: Path) -> House:
+def package_copy(tmp_path: Path) -> PackageCopy:
     shutil.copytree(ROOT / "simconsole", tmp_path / "simconsole", ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copy(ROOT / "pyproject.toml", tmp_path)
-    return House(tmp_path)
+    return PackageCopy(tmp_path)
 
 
 def some_module(room: str) -> str:
@@ -157,45 +157,45 @@ def some_module(room: str) -> str:
     )
 
 
-def test_contracts_hold_in_this_tree(house: House) -> None:
-    code, output = house.lint()
+def test_contracts_hold_in_this_tree(package_copy: PackageCopy) -> None:
+    code, output = package_copy.lint()
     assert code == 0, output
     assert "3 kept, 0 broken" in output
 
 
-def test_planted_upward_imports_are_found(house: House) -> None:
+def test_planted_upward_imports_are_found(package_copy: PackageCopy) -> None:
     """One import from each layer of rooms to the one above, all at once: each is named."""
     steps = []
     for above, below in itertools.pairwise(ROOMS[1:]):
         upper, lower = some_module(above[0]), some_module(below[-1])
-        house.plant(lower, f"import {upper}")
+        package_copy.plant(lower, f"import {upper}")
         steps.append((lower, upper))
-    code, output = house.lint()
+    code, output = package_copy.lint()
     assert code == 1
     assert "Rooms import downwards only BROKEN" in output
     for lower, upper in steps:
         assert f"{lower} -> {upper}" in output
 
 
-def test_planted_imports_between_rooms_side_by_side_are_found(house: House) -> None:
+def test_planted_imports_between_rooms_side_by_side_are_found(package_copy: PackageCopy) -> None:
     apart = [room for layer in ROOMS for room in layer if len(layer) > 1]
     pairs = [(some_module(room), some_module(other)) for layer in ROOMS for room, other in itertools.pairwise(layer)]
     assert len(apart) > 8
     for importer, imported in pairs:
-        house.plant(importer, f"import {imported}")
-    _, output = house.lint()
+        package_copy.plant(importer, f"import {imported}")
+    _, output = package_copy.lint()
     for importer, imported in pairs:
         assert f"{importer} -> {imported}" in output
 
 
-def test_planted_forbidden_imports_are_found(house: House) -> None:
+def test_planted_forbidden_imports_are_found(package_copy: PackageCopy) -> None:
     """Each forbidden module, in a pure module of its own, hidden in a function: each is named."""
     cores = [name for name in pure() if modules()[name].name != "__init__.py"]
     planted = list(zip(cores[:: len(cores) // 20], itertools.cycle(FORBIDDEN["forbidden_modules"])))  # one is endless
     assert {forbidden for _, forbidden in planted} == set(FORBIDDEN["forbidden_modules"])
     for core, forbidden in planted:
-        house.plant(core, f"def planted() -> None:\n    import {forbidden}\n")
-    code, output = house.lint()
+        package_copy.plant(core, f"def planted() -> None:\n    import {forbidden}\n")
+    code, output = package_copy.lint()
     assert code == 1
     assert f"{FORBIDDEN['name']} BROKEN" in output
     for core, forbidden in planted:
@@ -215,19 +215,19 @@ def test_planted_clock_in_a_test_is_refused(clock: str, code: str) -> None:
     assert "TID251" not in codes("simconsole/session/new.py")
 
 
-def test_a_new_room_must_find_its_place(house: House) -> None:
-    (house.root / "simconsole" / "annexe.py").write_text('"""A module at the root."""\n')
-    code, output = house.lint()
+def test_a_new_room_must_find_its_place(package_copy: PackageCopy) -> None:
+    (package_copy.root / "simconsole" / "annexe.py").write_text('"""A module at the root."""\n')
+    code, output = package_copy.lint()
     assert code == 1
     assert "simconsole.annexe" in output
 
 
-def test_planted_imports_between_outside_rooms_are_found(house: House) -> None:
+def test_planted_imports_between_outside_rooms_are_found(package_copy: PackageCopy) -> None:
     rooms = INDEPENDENT["modules"]
     assert rooms == [f"simconsole.{room}" for room in ("devices", "bridge", "canbus", "hud", "scene")]
     for importer, imported in itertools.permutations(rooms, 2):
-        house.plant(importer, f"import {imported}")
-    code, output = house.lint()
+        package_copy.plant(importer, f"import {imported}")
+    code, output = package_copy.lint()
     assert code == 1
     assert f"{INDEPENDENT['name']} BROKEN" in output
     for importer, imported in itertools.permutations(rooms, 2):

@@ -7,8 +7,8 @@ from argparse import Namespace
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from simconsole import __version__
 from simconsole.cli.outcome import Outcome, table
+from simconsole.values.version import __version__
 
 LIBRARIES = ("numpy", "numba", "pygame-ce", "websockets", "msgspec", "orjson", "rerun-sdk", "matplotlib", "pyyaml")
 

@@ -11,8 +11,7 @@ import sys
 from importlib import import_module
 from typing import Any, TextIO
 
-from simconsole import __version__
-from simconsole.cli.arguments import driving, recordings, tools
+from simconsole.cli.arguments import driving, recorded_drives, tools
 from simconsole.processes.lifetimes import (
     INTERRUPTED,
     SIGNALS,
@@ -24,6 +23,7 @@ from simconsole.processes.lifetimes import (
     interrupted,
 )
 from simconsole.values.errors import SimConsoleError, one_line
+from simconsole.values.version import __version__
 
 _AT_ONCE = ("demo", "drive", "bridge", "report", "view", "pack", "unpack")
 """Commands that Ctrl-C ends at once unless a drive handles it itself: they leave nothing half made. In the others it
@@ -39,9 +39,9 @@ def parser() -> argparse.ArgumentParser:
     commands = root.add_subparsers(dest="command", required=True, metavar="COMMAND")
     driving.driving(commands)
     driving.beside_a_drive(commands)
-    recordings.recordings(commands)
-    recordings.exchange(commands)
-    recordings.video(commands)
+    recorded_drives.recordings(commands)
+    recorded_drives.exchange(commands)
+    recorded_drives.video(commands)
     tools.tools(commands)
     tools.can(commands)
     return root

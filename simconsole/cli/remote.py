@@ -27,7 +27,7 @@ def autopilot(options: Namespace) -> Outcome:
     """
     stop = follow_parent(END_S).wants_end if options.attached else None
     from simconsole.bridge.protocol.backoff import DEAD_AFTER_S
-    from simconsole.drivers.autopilot.program import run
+    from simconsole.drivers.autopilot.rosbridge_autopilot import run
     from simconsole.drivers.path_tracker.tracker_settings import Gate
 
     results = run(

@@ -16,7 +16,7 @@ from simconsole.values.errors import RecordingError
 if TYPE_CHECKING:
     from simconsole.evaluation.video.drive_pictures import DrivePictures
     from simconsole.evaluation.video.drive_sound import DriveSound
-    from simconsole.evaluation.video.moments import Moment
+    from simconsole.evaluation.video.moments import VideoFrame
 
 SMALLEST_PX: Final = 320
 LARGEST_PX: Final = 4096
@@ -119,7 +119,7 @@ def _end_s(bundle: Bundle) -> float:
     return float(bundle.manifest.ticks / bundle.log.header.tick_hz) if bundle.manifest.finished else math.inf
 
 
-def _told(found: "Iterator[Moment]", progress: Progress, from_s: float, to_s: float) -> "Iterator[Moment]":
+def _told(found: "Iterator[VideoFrame]", progress: Progress, from_s: float, to_s: float) -> "Iterator[VideoFrame]":
     for moment in found:
         yield moment
         progress.done("video", min(1.0, (moment.t_s - from_s) / max(to_s - from_s, 1e-9)))

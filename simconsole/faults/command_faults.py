@@ -3,8 +3,18 @@
 from collections.abc import Sequence
 from typing import Final, Protocol
 
+from simconsole.bridge.link.delay import CommandsUnderWay
 from simconsole.faults.switched import Switched
-from simconsole.profiles.faults import Astray, Disconnected, Fault, LateCommands, NotFinite, Refused, Silent
+from simconsole.profiles.faults import (
+    Astray,
+    DelayedCommands,
+    Disconnected,
+    Fault,
+    LateCommands,
+    NotFinite,
+    Refused,
+    Silent,
+)
 from simconsole.values.protocols import CommandSource
 from simconsole.values.signals import NEVER_TICKS, Event, EventInput, RemoteCommand
 from simconsole.values.units import RAD_PER_DEG
@@ -31,9 +41,11 @@ class FaultyCommands:
     def __init__(self, source: CommandSource, armed: Sequence[ArmedFault], tick_hz: int) -> None:
         self._source = source
         self._armed = armed
-        self._tick_hz = tick_hz
         self._held: tuple[RemoteCommand, int] | None = None  # the last accepted command, and its tick
         self._refused = 0.0
+        self._tick_hz = tick_hz
+        delayed = (at for at, entry in enumerate(armed) if isinstance(entry.fault, DelayedCommands))
+        self._under_way = {at: CommandsUnderWay() for at in delayed}  # by the fault's place in the list
 
     def take(self, tick: int) -> tuple[RemoteCommand, EventInput]:
         """Return the command that the arbiter gets after all faults, and the edges since the last call."""
@@ -45,18 +57,25 @@ class FaultyCommands:
             self._held = command, tick
             command = command._replace(refused=command.refused + self._refused)
         raised = 0
-        for entry in on:
-            fault = entry.fault
-            if isinstance(fault, Disconnected) and entry.switch.ticks == 1:
+        for at, entry in enumerate(self._armed):
+            fault, is_on = entry.fault, entry.switch.ticks > 0
+            if isinstance(fault, DelayedCommands):  # also while it is off: it hears what is sent before
+                late = self._ticks(fault.by_ms) if is_on else 0
+                command = _delayed(self._under_way[at], command, tick, late)
+            elif not is_on:
+                continue
+            elif isinstance(fault, Disconnected) and entry.switch.ticks == 1:
                 raised |= int(Event.COMMANDER_LOST)
             elif isinstance(fault, LateCommands):
-                late = min(NEVER_TICKS, command.age_ticks + round(fault.by_ms * self._tick_hz / 1000.0))
-                command = command._replace(age_ticks=float(late))
+                command = _older(command, self._ticks(fault.by_ms))
             elif isinstance(fault, NotFinite):
                 command = command._replace(road_wheel_rad=float("nan"))
             elif isinstance(fault, Astray):
                 command = command._replace(road_wheel_rad=fault.road_wheel_deg * RAD_PER_DEG)
         return command, EventInput(float(int(events.events) | raised))
+
+    def _ticks(self, time_ms: float) -> int:
+        return round(time_ms * self._tick_hz / 1000.0)
 
     def _stopped(self, command: RemoteCommand, tick: int, refusing: bool) -> RemoteCommand:
         """Return the last accepted command with its age now; later ones count as refused, or as never received."""
@@ -66,3 +85,15 @@ class FaultyCommands:
             self._refused = max(self._refused, command.sequence - held.sequence)
         age = min(NEVER_TICKS, held.age_ticks + (tick - since))
         return held._replace(age_ticks=age, refused=held.refused + self._refused)
+
+
+def _older(command: RemoteCommand, ticks: int) -> RemoteCommand:
+    return command._replace(age_ticks=float(min(NEVER_TICKS, command.age_ticks + ticks)))
+
+
+def _delayed(under_way: CommandsUnderWay, command: RemoteCommand, tick: int, late: int) -> RemoteCommand:
+    """Return what has arrived by `tick`: a command that is new arrives `late` ticks later, and older by that."""
+    if under_way.is_new(command):
+        under_way.send(_older(command, late), tick + late)
+    under_way.turn(tick)
+    return under_way.now(command, tick)

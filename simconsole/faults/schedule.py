@@ -98,7 +98,7 @@ def process(before: Components, armed: Sequence[Armed], setting: Setting) -> Com
         devices=RaisingDevices(before.devices, switches["devices"]) if "devices" in switches else before.devices,
         commands=RaisingCommands(before.commands, switches["ros"]) if "ros" in switches else before.commands,
         ecu=RaisingCommands(before.ecu, switches["can"]) if "can" in switches else before.ecu,
-        outputs=(*before.outputs, RaisingOutput(switches["stations"])) if "stations" in switches else before.outputs,
+        outputs=(*before.outputs, RaisingOutput(switches["outputs"])) if "outputs" in switches else before.outputs,
     )
 
 

@@ -9,15 +9,7 @@ from typing import Final, NamedTuple
 
 from simconsole.hud.advice import BAND, ONE_SPEED, PREPARE, WIDEST
 from simconsole.hud.banner import ONE_SCREEN, Alert, alert_of, banner, slot
-from simconsole.hud.dial import dial
-from simconsole.hud.draw import BACKGROUND, Box, DrawItem, Rect, Text, bounds
-from simconsole.hud.guidance import Ahead
-from simconsole.hud.panels import LAMPS, pedals, status, steering, who_steers
-from simconsole.hud.screen import Screen
-from simconsole.hud.strip import HEIGHT_ARCMIN, strip
-from simconsole.hud.turn_sign import TURN_HEIGHT_ARCMIN, TURN_WIDTH_ARCMIN, turn_panel
-from simconsole.hud.view import NOT_NOW, TWO_GEARS, HudSettings, HudView
-from simconsole.hud.words import (
+from simconsole.hud.captions import (
     ASK,
     AUTOPILOT,
     CONSOLE,
@@ -29,6 +21,14 @@ from simconsole.hud.words import (
     STEER_OR_BRAKE,
     WAIT,
 )
+from simconsole.hud.dial import dial
+from simconsole.hud.draw import BACKGROUND, Box, DrawItem, Rect, Text, bounds
+from simconsole.hud.guidance import Ahead
+from simconsole.hud.panels import LAMPS, pedals, status, steering, who_steers
+from simconsole.hud.screen import Screen
+from simconsole.hud.strip import HEIGHT_ARCMIN, strip
+from simconsole.hud.turn_sign import TURN_HEIGHT_ARCMIN, TURN_WIDTH_ARCMIN, turn_panel
+from simconsole.hud.view import NOT_NOW, TWO_GEARS, HudSettings, HudView
 from simconsole.values.errors import ProfileError
 from simconsole.values.labels import (
     LINK_COMMANDER,

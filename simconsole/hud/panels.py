@@ -2,6 +2,7 @@
 
 from typing import Final, Literal, NamedTuple
 
+from simconsole.hud.captions import AUTOPILOT, CONSOLE, NOBODY, YOU
 from simconsole.hud.draw import (
     ACTIVE,
     CAUTION,
@@ -23,7 +24,6 @@ from simconsole.hud.draw import (
 from simconsole.hud.screen import DRIVING_ARCMIN, SECONDARY_ARCMIN
 from simconsole.hud.shapes import exclamation
 from simconsole.hud.view import HudView
-from simconsole.hud.words import AUTOPILOT, CONSOLE, NOBODY, YOU
 from simconsole.values.labels import LINK_CONNECTING, LINK_DOWN, LINK_LOST, LINK_NOBODY, LINK_RETRYING, validity_label
 from simconsole.values.signals import Validity
 from simconsole.values.validity import is_trusted

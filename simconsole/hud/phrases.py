@@ -7,6 +7,18 @@ from typing import Final
 
 from simconsole.hud.advice import BAND, ONE_SPEED, PREPARE
 from simconsole.hud.banner import ALERT_LABELS, DISTANCE, MODE_UNKNOWN, TIME
+from simconsole.hud.captions import (
+    ASK,
+    AUTOPILOT,
+    CONSOLE,
+    MENDING,
+    NOBODY,
+    PRESS_TO_DRIVE,
+    PRESS_TO_RESET,
+    STEER_OR_BRAKE,
+    WAIT,
+    YOU,
+)
 from simconsole.hud.dial import AUTO, KMH, NO_DATA, THOUSAND_RPM, UP
 from simconsole.hud.frame_times import DATA_AGE, DRAWING, FRAME, NO_DATA_YET, RATE
 from simconsole.hud.key_names import BUTTON_WORDS, KEY_CODES, KEY_WORDS, WINDOW_WORDS, key_name
@@ -38,18 +50,6 @@ from simconsole.hud.panels import (
 from simconsole.hud.strip import RPM
 from simconsole.hud.turn_sign import KILOMETRES, METRES, NOW
 from simconsole.hud.view import FORCES, NOT_NOW, PAUSED, TWO_GEARS
-from simconsole.hud.words import (
-    ASK,
-    AUTOPILOT,
-    CONSOLE,
-    MENDING,
-    NOBODY,
-    PRESS_TO_DRIVE,
-    PRESS_TO_RESET,
-    STEER_OR_BRAKE,
-    WAIT,
-    YOU,
-)
 from simconsole.profiles.view import LanguageProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.labels import (

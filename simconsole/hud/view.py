@@ -3,10 +3,10 @@
 from typing import Final, NamedTuple
 
 from simconsole.hud.advice import advice_label
+from simconsole.hud.captions import next_step, other_side
 from simconsole.hud.guidance import Ahead, Guidance, ahead
 from simconsole.hud.key_names import help_rows, key_label
 from simconsole.hud.language import number, say
-from simconsole.hud.words import next_step, other_side
 from simconsole.profiles.control import ControlProfile
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.vehicle import CarProfile, VehicleProfile

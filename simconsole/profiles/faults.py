@@ -4,7 +4,7 @@ A kind is a struct with its own parameters on top of `Onset`; whoever adds one a
 in faults/schedule.py, the one place that maps each kind to its layer.
 """
 
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import Annotated, Any, Final, Literal, TypeAlias
 
 import msgspec
 from msgspec import Meta, Struct
@@ -40,6 +40,9 @@ EdgeName: TypeAlias = Literal[
     "operator",
     "collision",
 ]
+
+EARLIER_PARTS: Final = {"stations": "outputs"}
+"""Names that parts of a drive had in earlier profiles and bundles, to those of now."""
 
 MAX_FAULTS = 48
 """The state vector holds the faults that are on as bits of one float64."""
@@ -213,7 +216,14 @@ class Refused(Onset, frozen=True, kw_only=True, tag_field="kind", tag="refused")
 
 
 class LateCommands(Onset, frozen=True, kw_only=True, tag_field="kind", tag="late_commands"):
-    """Commands arrive, steadily, `by_ms` older than they were."""
+    """Commands arrive, steadily, `by_ms` older than they were: their stamps say so, they act as soon as before."""
+
+    by_ms: Annotated[float, Meta(gt=0.0, le=5000.0)]
+    controller: ControllerName = "ros"
+
+
+class DelayedCommands(Onset, frozen=True, kw_only=True, tag_field="kind", tag="delayed_commands"):
+    """What is sent meanwhile arrives, and acts, `by_ms` later, in whole ticks, and is older by that."""
 
     by_ms: Annotated[float, Meta(gt=0.0, le=5000.0)]
     controller: ControllerName = "ros"
@@ -232,7 +242,7 @@ class Astray(Onset, frozen=True, kw_only=True, tag_field="kind", tag="astray"):
     controller: ControllerName = "ros"
 
 
-CommandFault: TypeAlias = Silent | Disconnected | Refused | LateCommands | NotFinite | Astray
+CommandFault: TypeAlias = Silent | Disconnected | Refused | LateCommands | DelayedCommands | NotFinite | Astray
 """Between a controller and the arbiter (faults/command_faults.py)."""
 
 
@@ -245,7 +255,13 @@ class Stall(Onset, frozen=True, kw_only=True, tag_field="kind", tag="stall"):
 class Raises(Onset, frozen=True, kw_only=True, tag_field="kind", tag="raises"):
     """A part of the drive raises an exception whenever it is called."""
 
-    part: Literal["devices", "ros", "can", "stations"]
+    part: Literal["devices", "ros", "can", "outputs", "stations"]
+    """`outputs`: who reads the snapshots; `stations` is its earlier name, still read."""
+
+    def __post_init__(self) -> None:
+        """Take the earlier name of a part as the one of now."""
+        super().__post_init__()
+        msgspec.structs.force_setattr(self, "part", EARLIER_PARTS.get(self.part, self.part))
 
 
 ProcessFault: TypeAlias = Stall | Raises

@@ -18,7 +18,7 @@ from simconsole.session.lockstep import STAND_S, LockstepLink, LockstepServer
 from simconsole.session.opened import Opened, commands_over_link, outputs_of, summary_of, traffic_of
 from simconsole.session.pacing import UnpacedPacer
 from simconsole.session.recorder import Log, LogRecorder
-from simconsole.session.seat import open_seating
+from simconsole.session.seat import open_cockpit
 from simconsole.session.traffic_source import TrafficSource
 from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession
@@ -98,15 +98,15 @@ def open_headless(
         ros = _RosSide()
     can = _open_can(resolved, console, bundle, stack)
     outputs = tuple(part for part in (can, parts.observer) if part is not None)
-    seating = open_seating(resolved, console, stack)
+    cockpit = open_cockpit(resolved, console, stack)
     recorder = LogRecorder(log, ros.take_acts, traffic, own.signals)
     components = Components(
-        devices=seating.devices,
+        devices=cockpit.devices,
         commands=ros.commands,
         recorder=recorder,
-        outputs=(*seating.outputs, *outputs_of(traffic), *unpushable.outputs, *ros.outputs, *outputs),
+        outputs=(*cockpit.outputs, *outputs_of(traffic), *unpushable.outputs, *ros.outputs, *outputs),
         pace=pace,
-        seat=seating.seat,
+        seat=cockpit.seat,
         ecu=can or NobodyCommands(),
         standby=(*ros.standby, *(() if can is None else (can.listen,))),
         road_users=traffic,
@@ -122,9 +122,9 @@ def open_headless(
 
     return Opened(
         components,
-        lambda snapshot: parts.ended(snapshot) or seating.finished(snapshot),
+        lambda snapshot: parts.ended(snapshot) or cockpit.finished(snapshot),
         summary,
-        identities=seating.identities,
+        identities=cockpit.identities,
         left=unpushable.ended,
         failure=lambda: parts.failure,
     )

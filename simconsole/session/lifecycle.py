@@ -9,7 +9,6 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from simconsole import __version__
 from simconsole.devices.force_feedback.aligning import shares_by_speed
 from simconsole.drivers.own_controller import NO_OWN_CODE, OwnCode
 from simconsole.processes.lifetimes import Interrupt, remove_half_made, undone
@@ -50,6 +49,7 @@ from simconsole.values.own_signals import OwnSignals
 from simconsole.values.planned_path import ENCODING as PLANS_ENCODING
 from simconsole.values.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE
 from simconsole.values.state_vector import INPUT_WIDTH, Snapshot, TickInputs
+from simconsole.values.version import __version__
 from simconsole.world.traffic.road_users import ENCODING as ROAD_USERS_ENCODING
 
 ENDLESS_TICKS = 2**53

@@ -12,7 +12,6 @@ from typing import Final
 
 import msgspec
 
-from simconsole import __version__
 from simconsole.recording.bundles.provenance import (
     Device,
     Given,
@@ -23,6 +22,7 @@ from simconsole.recording.bundles.provenance import (
     utc_now,
 )
 from simconsole.values.protocols import DeviceIdentity
+from simconsole.values.version import __version__
 
 PACKAGES: Final = (
     "numpy",

@@ -34,7 +34,7 @@ from simconsole.session.paced import (
 from simconsole.session.pacing import Pacer, realtime_hints
 from simconsole.session.preconditions import check_address
 from simconsole.session.recorder import LogRecorder
-from simconsole.session.seat import open_seating
+from simconsole.session.seat import open_cockpit
 from simconsole.session.traffic_source import TrafficSource
 from simconsole.session.worker_programs import LATENCY
 from simconsole.tick.advance import Console
@@ -84,19 +84,19 @@ def open_realtime(
     opening.close()  # from here on the supervisor removes the folder, however the core ends
     address = _await_workers(resolved, folder, programs, (drive, token), supervisor, interrupt.check, traffic)
     with_window = resolved.session.outputs.hud is not None
-    seating = open_seating(resolved, console, stack, memory.keys if with_window else None)
+    cockpit = open_cockpit(resolved, console, stack, memory.keys if with_window else None)
     missing = stack.enter_context(realtime_hints())
     pace, latencies = Pacer(console.tick_hz), LatencyStatistics(time.monotonic_ns, console.tick_hz)
     components = _paced_components(
         resolved,
         console,
         Components(
-            devices=seating.devices,
+            devices=cockpit.devices,
             commands=memory.commands,
             recorder=recorder,
-            outputs=(*seating.outputs, *outputs_of(traffic), *unpushable.outputs, memory.snapshots, supervisor),
+            outputs=(*cockpit.outputs, *outputs_of(traffic), *unpushable.outputs, memory.snapshots, supervisor),
             pace=pace,
-            seat=seating.seat,
+            seat=cockpit.seat,
             ecu=ecu,
             standby=(supervisor.publish, memory.commands.stand),
             road_users=traffic,
@@ -105,17 +105,17 @@ def open_realtime(
 
     def summary() -> dict[str, Any]:
         latency = {**latencies.summary_us(), **latencies_of(folder, LATENCY)}
-        workers = {"station_restarts": supervisor.counters(), **bridge_summary(folder), **can_summary(folder)}
+        workers = {"worker_restarts": supervisor.counters(), **bridge_summary(folder), **can_summary(folder)}
         own = {**recorder.acts_summary(), **summary_of(traffic), **unpushable.summary()}
         own |= {"latency_us": latency, "not_granted": missing}
         return {**pace.summary(), **workers, **own}
 
     return Opened(
         components=components,
-        finished=seating.finished,
+        finished=cockpit.finished,
         summary=summary,
         bridge_url=address,
-        identities=seating.identities,
+        identities=cockpit.identities,
         left=lambda: memory.keys.ended() or unpushable.ended(),
     )
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from simconsole.drivers.simulated_person.guidance import Guidance
 
 
-class Seating(NamedTuple):
+class OpenedCockpit(NamedTuple):
     """An opened cockpit."""
 
     devices: DeviceSource
@@ -50,9 +50,9 @@ def look_for_devices(resolved: ResolvedSession) -> None:
             raise DeviceError(f"{resolved.cockpit.title}: {wrong[0]}")
 
 
-def open_seating(
+def open_cockpit(
     resolved: ResolvedSession, console: Console, stack: ExitStack, keys: Callable[[], tuple[int, int]] | None = None
-) -> Seating:
+) -> OpenedCockpit:
     """Open the cockpit that the session names; `stack` closes it.
 
     Args:
@@ -67,7 +67,7 @@ def open_seating(
     """
     driver = resolved.session.devices.driver
     if driver == "none":
-        return Seating(NobodySeated())
+        return OpenedCockpit(NobodySeated())
     if driver == "virtual":
         return _open_person(resolved, console, stack)
     if driver == "keyboard" and keys is None:
@@ -81,27 +81,27 @@ def open_seating(
     devices = open_source(driver, resolved.cockpit, tick_hz=console.tick_hz, keys=keys)
     stack.callback(devices.close)
     if isinstance(devices, KeyboardSource):
-        return Seating(devices, outputs=(devices,))
+        return OpenedCockpit(devices, outputs=(devices,))
     if not isinstance(devices, SdlSource):
-        return Seating(devices)
+        return OpenedCockpit(devices)
     identities = devices.identities()
     assistance = assistance_of(resolved.cockpit.wheel)
     if assistance is not None:
         settings = cockpit_settings(resolved.cockpit, console.tick_hz)
         assisted = AssistedSource(devices, settings, assistance, tick_hz=console.tick_hz)
-        return Seating(assisted, outputs=(assisted,), identities=identities)
+        return OpenedCockpit(assisted, outputs=(assisted,), identities=identities)
     if resolved.cockpit.force_feedback is None:
         _say(f"no force feedback: {resolved.cockpit.title} has none; everything else works")
-        return Seating(devices, identities=identities)
-    seating = _with_motor(devices, resolved.cockpit, resolved.cockpit.force_feedback, stack)
-    return seating._replace(identities=identities)
+        return OpenedCockpit(devices, identities=identities)
+    cockpit = _with_motor(devices, resolved.cockpit, resolved.cockpit.force_feedback, stack)
+    return cockpit._replace(identities=identities)
 
 
 def _say(line: str) -> None:
     print(f"simconsole: {line}", file=sys.stderr, flush=True)
 
 
-def _with_motor(devices: "SdlSource", cockpit: CockpitProfile, force: ForceFeedback, stack: ExitStack) -> Seating:
+def _with_motor(devices: "SdlSource", cockpit: CockpitProfile, force: ForceFeedback, stack: ExitStack) -> OpenedCockpit:
     """Add the wheel's motor; without one everything else works, and a line says so."""
     from simconsole.devices.force_feedback.motor import MotorisedSource, NoHaptics, WheelMotor
     from simconsole.devices.force_feedback.servo_range import servo_refusal
@@ -135,10 +135,10 @@ def _with_motor(devices: "SdlSource", cockpit: CockpitProfile, force: ForceFeedb
     refusal = servo_refusal(force)
     if refusal is not None:
         _say(f"autonomy is refused with this wheel: {refusal}")
-    return Seating(MotorisedSource(devices, motor, replugged, refusal is None), outputs=(motor,))
+    return OpenedCockpit(MotorisedSource(devices, motor, replugged, refusal is None), outputs=(motor,))
 
 
-def _open_person(resolved: ResolvedSession, console: Console, stack: ExitStack) -> Seating:
+def _open_person(resolved: ResolvedSession, console: Console, stack: ExitStack) -> OpenedCockpit:
     from simconsole.devices.calibration.cockpit_settings import cockpit_settings
     from simconsole.devices.force_feedback.motor import MotorisedSource, SimulatedWheelPort, WheelMotor
     from simconsole.devices.force_feedback.simulated_wheel import SimulatedWheel, step_wheel
@@ -155,12 +155,14 @@ def _open_person(resolved: ResolvedSession, console: Console, stack: ExitStack) 
     force = resolved.cockpit.force_feedback
     if force is None:
         person = SimulatedPerson(plan, cockpit, numbers, tick_hz=tick_hz, guidance=guidance)
-        return Seating(devices, person, finished=lambda snapshot: person.finished, identities=devices.identities())
+        return OpenedCockpit(
+            devices, person, finished=lambda snapshot: person.finished, identities=devices.identities()
+        )
     wheel = SimulatedWheel(force, resolved.cockpit.wheel.lock_to_lock_deg, tick_hz=tick_hz, step=compiled(step_wheel))
     person = SimulatedPerson(plan, cockpit, numbers, tick_hz=tick_hz, wheel=wheel, guidance=guidance)
     motor = WheelMotor(SimulatedWheelPort(wheel), force, lambda snapshot: snapshot.t_s)
     stack.callback(motor.close)
-    return Seating(
+    return OpenedCockpit(
         MotorisedSource(devices, motor, lambda: None),
         person,
         (motor,),

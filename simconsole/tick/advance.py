@@ -112,15 +112,15 @@ def build_console(
     """
     if PHYSICS_HZ % tick_hz:
         raise ValueError(f"tick_hz {tick_hz} does not divide {PHYSICS_HZ}")
-    feel = force_feedback if force.max_torque_nm > 0.0 else None
+    torque = force_feedback if force.max_torque_nm > 0.0 else None
     look, struck = (None, None) if roads is None else (look_around, strike)
     step = execution(platform.step) if platform.compiled else platform.step
     if platform.compiled:
-        block = execution(_block_of(in_order(decide, struck, platform.step, look, feel, None)))
+        block = execution(_block_of(in_order(decide, struck, platform.step, look, torque, None)))
     else:
-        stages = (None if one is None else execution(one) for one in (struck, look, feel))
-        struck_at_work, look_at_work, feel_at_work = stages
-        block = _block_of(in_order(execution(decide), struck_at_work, step, look_at_work, feel_at_work, None))
+        stages = (None if one is None else execution(one) for one in (struck, look, torque))
+        struck_at_work, look_at_work, torque_at_work = stages
+        block = _block_of(in_order(execution(decide), struck_at_work, step, look_at_work, torque_at_work, None))
     return Console(
         tick_hz=tick_hz,
         tick_s=1.0 / tick_hz,
@@ -134,7 +134,7 @@ def build_console(
         decide=execution(decide),
         strike=None if struck is None else execution(struck),
         step=step,
-        force_feedback=None if feel is None else execution(feel),
+        force_feedback=None if torque is None else execution(torque),
         roads=roads,
         look_around=None if look is None else execution(look),
         block=holding(block, roads),

@@ -8,7 +8,7 @@ from simconsole.values.signals import FAR, Button, Event, Mode
 from simconsole.values.state_vector import LAYOUT, Snapshot
 
 
-class Moment(NamedTuple):
+class WatchedVehicle(NamedTuple):
     """Whom a trigger looks at, at one instant."""
 
     x_m: float
@@ -30,7 +30,7 @@ class TriggerWatch:
         self._was_faster = False
         self._was = rising
 
-    def turn(self, tick: int, before: Snapshot, seen: Moment | None = None) -> int | None:
+    def turn(self, tick: int, before: Snapshot, seen: WatchedVehicle | None = None) -> int | None:
         """Return the tick at which it begins, None where that is not known yet.
 
         Args:
@@ -39,13 +39,13 @@ class TriggerWatch:
             seen: whom it looks at; the console's vehicle, if it is left out.
         """
         if self._start is None:
-            reached = self._reached(before, own_moment(before) if seen is None else seen)
+            reached = self._reached(before, own_vehicle(before) if seen is None else seen)
             self._was = self._was and reached
             if reached and not self._was:
                 self._start = tick + self._delay
         return self._start
 
-    def _reached(self, before: Snapshot, seen: Moment) -> bool:
+    def _reached(self, before: Snapshot, seen: WatchedVehicle) -> bool:
         trigger = self._trigger
         if trigger.at_distance_m is not None:
             return seen.distance_m >= trigger.at_distance_m
@@ -65,7 +65,7 @@ class TriggerWatch:
         return _near_in_front(trigger, seen)
 
 
-def _near_in_front(trigger: Trigger, seen: Moment) -> bool:
+def _near_in_front(trigger: Trigger, seen: WatchedVehicle) -> bool:
     """Return whether a gap is short enough; times are compared as products, for a speed may be 0."""
     if seen.gap_m >= FAR:
         return False
@@ -76,10 +76,10 @@ def _near_in_front(trigger: Trigger, seen: Moment) -> bool:
     return trigger.collision_below_s is not None and seen.gap_m < trigger.collision_below_s * seen.closing_mps
 
 
-def own_moment(before: Snapshot) -> Moment:
+def own_vehicle(before: Snapshot) -> WatchedVehicle:
     """Return the console's vehicle after a tick, and its gap to whom it follows."""
     vehicle, ahead = before.vehicle, read(before.vector, LAYOUT.ahead)
-    return Moment(
+    return WatchedVehicle(
         x_m=vehicle.x_m,
         y_m=vehicle.y_m,
         distance_m=vehicle.distance_m,

@@ -27,7 +27,7 @@ class Hop(StrEnum):
     TAKE = "take"  # commands and events
     DECIDE = "decide"
     STEP = "step"
-    FORCE_FEEDBACK = "feel"  # what the wheel's torque shall be
+    FORCE_FEEDBACK = "force feedback"  # what the wheel's torque shall be
     RECORD = "record"
     TORQUE = "torque out"  # handed to the wheel's driver
     PUBLISH = "publish"  # in shared memory

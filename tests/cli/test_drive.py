@@ -39,7 +39,7 @@ def test_a_script_drives_for_as_long_as_asked(short: Path) -> None:
 
 def test_every_bundle_and_report_tells_the_latency_of_each_hop(short: Path) -> None:
     hops = open_bundle(short).manifest.summary["latency_us"]
-    assert list(hops)[:6] == ["device", "read", "take", "decide", "step", "feel"]
+    assert list(hops)[:6] == ["device", "read", "take", "decide", "step", "force feedback"]
     assert {hop["count"] for hop in hops.values()} == {750 // LOOKED_AT}
     assert "<h2>Latency</h2>" in (short / "report.html").read_text()
 

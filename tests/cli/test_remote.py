@@ -9,7 +9,7 @@ import pytest
 
 from simconsole.cli import remote
 from simconsole.cli.remote import autopilot, own_token
-from simconsole.drivers.autopilot import program
+from simconsole.drivers.autopilot import rosbridge_autopilot as program
 from simconsole.processes.lifetimes import Parent
 from simconsole.session.autopilot_program import TOKEN_VARIABLE
 from simconsole.values.errors import ProfileError

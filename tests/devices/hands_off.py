@@ -25,6 +25,9 @@ from simconsole.vehicle.rim_stiffness import rim_stiffness
 from tests.paths import ROOT
 
 TICK_HZ = 250
+FAST_MPS = 53.0
+"""Above it the wheel is turned more slowly: the angle of a bend falls by the square of the speed, in a car that
+oversteers by more."""
 HELD = Arm(400.0, 6.0, 0.0, 60.0, 0.0)
 COCKPIT = "t500rs_th8rs"
 
@@ -111,7 +114,8 @@ def bend(vehicle: str, speed_kmh: float, lateral_mps2: float) -> Bend | None:
             return None
         if time_s < 5.0:
             error = lateral_mps2 - snapshot.vehicle.ay_mps2
-            steer["rad"] += 0.15 * error / snapshot.tick_hz * min(1.0, 25.0 / snapshot.vehicle.vx_mps)
+            vx_mps = snapshot.vehicle.vx_mps
+            steer["rad"] += 0.15 * error / snapshot.tick_hz * min(1.0, 25.0 / vx_mps, (FAST_MPS / vx_mps) ** 6)
         return Intent(hand_wheel_rad=steer["rad"], throttle=hold(snapshot), gear=1.0)
 
     pilot = RunUp(speed_kmh, session.vehicle.steering.ratio, turn, rolling=False)

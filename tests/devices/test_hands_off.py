@@ -77,6 +77,21 @@ def test_every_swing_is_at_most_half_the_last(
     record_property(f"hands off, {vehicle}, {speed_kmh} km/h, {lateral_mps2:g} m/s2", f"swings at most {worst:.2f}")
 
 
+@pytest.mark.parametrize("speed_kmh", [210, 320])
+def test_bmw_comes_to_rest_up_to_its_own_top_speed(speed_kmh: int, shipped: ForceFeedback) -> None:
+    """324 km/h, an oversteering car that settles in no bend: released on the way, from at most 4 m/s2."""
+    start = bend("commonroad_bmw320i", speed_kmh, 2.0)
+    assert start is not None
+    assert start.speed_mps >= 0.95 * speed_kmh / 3.6
+    assert 1.5 <= start.lateral_mps2 <= 4.0
+    for draw in (Draw(), ENDS[5], ENDS[10]):
+        released = let_go("commonroad_bmw320i", start, true_force(shipped, draw), found_force(shipped, draw))
+        assert worst_ratio(released) <= 0.5, (draw, released.swings_deg)
+        end_deg = np.degrees(released.rad[-TICK_HZ:])
+        assert np.ptp(end_deg) < 1.0, draw
+        assert abs(end_deg[-1]) <= released.friction_band_deg + 5.0, draw
+
+
 @pytest.mark.parametrize("vehicle", SHIPPED)
 @pytest.mark.parametrize("speed_kmh", [30, 45])
 def test_slow_car_never_swings_up(vehicle: str, speed_kmh: int, shipped: ForceFeedback, sample: Sample) -> None:

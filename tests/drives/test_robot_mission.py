@@ -22,11 +22,12 @@ from simconsole.recording.bundles.replay_bundle import replay_bundle
 from simconsole.values.host.jit import compiled
 from simconsole.values.platform import Pose
 from simconsole.world.arena.outlines import outlines_of
-from tests.drivers.robots.arena_robot import arena, burger
+from tests.drivers.robots.arena_robot import burger
 from tests.drives.console import Running
 from tests.patience import PATIENCE_S
 from tests.ports import free_port
 from tests.samples import Sample
+from tests.world.arena.shipped_arena import arena
 
 FIRST = arena().starts[0]
 START = Pose(FIRST.x_m, FIRST.y_m, math.radians(FIRST.yaw_deg))

@@ -5,7 +5,7 @@ from pathlib import Path
 from simconsole.evaluation.sweep.journal import JOURNAL
 from simconsole.evaluation.sweep.results import RESULTS
 from tests.drives.console import Running, results, simconsole
-from tests.evaluation.sweep.clusters import cluster, kill, lanes_of
+from tests.evaluation.sweep.clusters import cluster, kill, pool_workers_of
 from tests.evaluation.sweep.plans import write_plan
 from tests.patience import wait_until
 from tests.samples import Sample
@@ -44,7 +44,7 @@ def killed_and_gone_on(tmp_path: Path, plan: Path, count: int) -> Path:
     journal = folder / JOURNAL
     with Running(tmp_path, "sweep", plan, "--jobs", 2, "--out", folder) as running:
         wait_until(lambda: journal.exists() and journal.read_bytes().count(b"\n") > count // 3, "a third of the drives")
-        lanes = lanes_of(running.process.pid)
+        lanes = pool_workers_of(running.process.pid)
         kill(running.process.pid)
         running.end()
     assert len(lanes) == 2

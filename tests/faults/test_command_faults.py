@@ -58,6 +58,38 @@ def test_refused_commands_are_counted() -> None:
     assert found[-1][0].sequence == 4.0
 
 
+def test_delayed_commands_act_whole_ticks_later_and_are_older_by_that() -> None:
+    found = [command for command, _ in taken(kinds.DelayedCommands(at_s=0.0, by_ms=100.0), range(20, 60))]
+    assert [command.sequence for command in found] == [4.0] * 30 + [5.0] * 5 + [6.0] * 5  # 100 ms: 25 ticks
+    assert [command.age_ticks for command in found] == [*map(float, range(30)), *map(float, [*range(25, 30)] * 2)]
+
+
+def test_commands_sent_after_a_delay_overtake_those_on_the_way() -> None:
+    source = FaultyCommands(Controller(), [armed := Armed(kinds.DelayedCommands(at_s=0.0, by_ms=100.0))], HZ)
+    found = []
+    for tick in range(1, 61):
+        armed.switch.ticks = max(0, tick - 20) if tick < 33 else 0
+        found.append(source.take(tick)[0])
+    sequences = [command.sequence for command in found]
+    assert sequences[18:34] == [3.0, *[4.0] * 15]
+    assert sequences[34:45] == [7.0] * 5 + [8.0] * 5 + [9.0]  # 5 and 6, sent late, come after 7 and are dropped
+    assert found[34].age_ticks == 0.0
+
+
+def test_a_whole_delay_beside_another_fault_keeps_the_order_of_the_list() -> None:
+    """The command that is astray when it is sent is so, late; one that is led astray late is so at once."""
+    for faults, at in (((0, 1), 50), ((1, 0), 25)):
+        kind = (kinds.Astray(at_s=0.0, road_wheel_deg=20.0), kinds.DelayedCommands(at_s=0.0, by_ms=100.0))
+        armed = [Armed(kind[number]) for number in faults]
+        source = FaultyCommands(Controller(), armed, HZ)
+        angles = []
+        for tick in range(1, 61):
+            for one in armed:
+                one.switch.ticks = max(0, tick - 24)
+            angles.append(source.take(tick)[0].road_wheel_rad)
+        assert 1 + next(place for place, angle in enumerate(angles) if angle) == at
+
+
 def test_what_does_not_stop_commands_changes_them() -> None:
     late = taken(kinds.LateCommands(at_s=0.0, by_ms=100.0), range(25, 26))[0][0]
     assert (late.sequence, late.age_ticks) == (5.0, 25.0)

@@ -85,7 +85,7 @@ ENDINGS = {
     "stall, stall_ms: 50": Ending(None),
     "raises, part: devices": LOST,
     "raises, part: ros": LEFT,
-    "raises, part: stations": Ending(None),
+    "raises, part: outputs": Ending(None),
 }
 
 

@@ -20,6 +20,8 @@ import genpy  # noqa: E402  # found only now
 import rospy  # noqa: E402
 from websockets.sync.client import connect  # noqa: E402
 
+PATIENCE_S = 600.0  # of tests/patience.py, which this program cannot import: it ends only what hangs
+
 
 def load(type_name: str, kind: str) -> Any:
     package, _, name = type_name.partition("/")
@@ -87,7 +89,7 @@ class Relay:
         key = f"ros1:{self._numbers}"
         answer = self._answers[key] = SimpleQueue()
         self.say(op="call_service", service=service, id=key, args=plain(request))
-        said = answer.get(timeout=20.0)
+        said = answer.get(timeout=PATIENCE_S)
         if not said["result"]:
             raise rospy.ServiceException(said["values"])
         return said["values"]
@@ -95,7 +97,7 @@ class Relay:
     def _call(self, said: Any) -> None:
         proxy = self._proxies[said["service"]]
         try:
-            proxy.wait_for_service(timeout=10.0)
+            proxy.wait_for_service(timeout=PATIENCE_S)
             values, result = plain(proxy(filled(proxy.request_class, said["args"]))), True
         except (rospy.ServiceException, rospy.ROSException) as error:
             values, result = str(error), False

@@ -10,12 +10,13 @@ from typing import Any
 
 import roslibpy
 
+PATIENCE_S = 600.0  # of tests/patience.py, which this program cannot import: it ends only what hangs
 CONTROL = "/control/command/control_cmd"
 
 
 def main(port: int, answers: int) -> None:
     ros = roslibpy.Ros("127.0.0.1", port)
-    ros.run(timeout=20)
+    ros.run(timeout=PATIENCE_S)
     seen: list[dict[str, Any]] = []
     done = threading.Event()
     control = roslibpy.Topic(ros, CONTROL, "autoware_control_msgs/Control")
@@ -37,7 +38,7 @@ def main(port: int, answers: int) -> None:
     watched = roslibpy.Topic(ros, "/cmd_vel", "geometry_msgs/Twist")
     watched.subscribe(lambda message: done.set())
     odometry.subscribe(answer)
-    finished = done.wait(30.0)
+    finished = done.wait(PATIENCE_S)
     odometry.unsubscribe()
     watched.unsubscribe()
     control.unadvertise()

@@ -30,6 +30,8 @@ from simconsole.bridge.messages import Registry, standard_registry
 from simconsole.bridge.transport.server import BridgeServer
 from simconsole.profiles.bridge import BridgeProfile
 
+PATIENCE_S = 600.0  # of tests/patience.py, which this program cannot import: it ends only what hangs
+
 VERSION = "2.1.0"
 SHA256 = "05d2ec196dd2ff89c864418f7afeac4b01bff5679034c997a6b4d0c54775f352"
 TRANSPORTS = ("twisted", "asyncio")
@@ -105,7 +107,7 @@ class Server:
         self._stop = threading.Event()
         self._thread = threading.Thread(target=lambda: asyncio.run(self._serve()))
         self._thread.start()
-        assert self._ready.wait(10.0)
+        assert self._ready.wait(PATIENCE_S)
 
     async def _serve(self) -> None:
         server = BridgeServer(self._profile, registry=registry())

@@ -59,3 +59,8 @@ def test_no_more_faults_than_a_float_has_bits_for() -> None:
 )
 def test_a_label_names_what_it_does_and_not_when(fault: Fault, label: str) -> None:
     assert fault_label(fault) == label
+
+
+def test_a_part_is_read_by_its_earlier_name() -> None:
+    earlier = msgspec.convert({"kind": "raises", "at_s": 1.0, "part": "stations"}, Fault)
+    assert fault_label(earlier) == "raises part outputs"

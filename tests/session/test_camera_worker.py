@@ -106,7 +106,7 @@ def test_pictures_of_a_drive_fit_the_road_by_their_camera_info(tmp_path: Path) -
             seen += 1
     assert seen >= 4
     summary = open_bundle(tmp_path / "bundle").manifest.summary
-    assert not summary["station_restarts"].get("camera")
+    assert not summary["worker_restarts"].get("camera")
 
 
 @pytest.mark.parametrize("pacing", ["lockstep", "free"])

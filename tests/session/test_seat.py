@@ -12,7 +12,7 @@ from simconsole.devices.setup import device_commands
 from simconsole.devices.sources import kernel_limits
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.session.resolution import load_session, resolve
-from simconsole.session.seat import look_for_devices, open_seating
+from simconsole.session.seat import look_for_devices, open_cockpit
 from simconsole.tick.assembly import ResolvedSession, assemble
 from simconsole.values.errors import DeviceError
 from simconsole.values.host.jit import plain
@@ -30,14 +30,14 @@ def test_wheel_without_force_feedback_drives_on_and_says_so(capsys: pytest.Captu
     with ExitStack() as stack:
         cockpit = VirtualCockpit(resolved.cockpit)
         stack.callback(cockpit.close)
-        seating = open_seating(resolved, assemble(resolved, plain)[0], stack)
+        opened = open_cockpit(resolved, assemble(resolved, plain)[0], stack)
         assert "simconsole: no force feedback: wheel: force feedback: value none" in capsys.readouterr().err
-        sample = seating.devices.poll(1)
+        sample = opened.devices.poll(1)
         assert (sample.wheel_age_ticks, sample.wheel_motor) == (0.0, 0.0)
         cockpit.unplug("wheel")
-        assert seating.devices.poll(2).wheel_age_ticks > 1e6
+        assert opened.devices.poll(2).wheel_age_ticks > 1e6
         cockpit.plug("wheel")
-        ages = [seating.devices.poll(tick).wheel_age_ticks for tick in (3, 4)]
+        ages = [opened.devices.poll(tick).wheel_age_ticks for tick in (3, 4)]
         assert ages[-1] == 0.0, "back by identity, its motor asked for anew"
 
 
@@ -47,10 +47,10 @@ def test_cockpit_without_the_section_has_no_motor_worker() -> None:
     with ExitStack() as stack:
         stack.callback(VirtualCockpit(bare.cockpit).close)
         console, _ = assemble(bare, plain)
-        seating = open_seating(bare, console, stack)
-        assert seating.outputs == ()
+        opened = open_cockpit(bare, console, stack)
+        assert opened.outputs == ()
         assert console.force_feedback is None
-        assert "044f:b65e" in [device.usb_id for device in seating.identities]
+        assert "044f:b65e" in [device.usb_id for device in opened.identities]
 
 
 @pytest.mark.parametrize(("driver", "cockpit"), [("sdl", "gamepad"), ("keyboard", "keyboard")])
@@ -63,20 +63,20 @@ def test_keys_and_sticks_are_told_the_speed(driver: str, cockpit: str) -> None:
         if driver == "sdl":
             stack.callback(VirtualCockpit(resolved.cockpit).close)
         console, _ = assemble(resolved, plain)
-        seating = open_seating(resolved, console, stack, lambda: (int(Key.STEER_LEFT), 0))
-        assert seating.outputs == (seating.devices,)
-        assert seating.devices.poll(1).wheel_age_ticks == 0.0
+        opened = open_cockpit(resolved, console, stack, lambda: (int(Key.STEER_LEFT), 0))
+        assert opened.outputs == (opened.devices,)
+        assert opened.devices.poll(1).wheel_age_ticks == 0.0
 
 
 def test_simulated_person_sits_at_a_wheel_with_a_motor() -> None:
     resolved = session("virtual")
     with ExitStack() as stack:
-        seating = open_seating(resolved, assemble(resolved, plain)[0], stack)
-        (motor,) = seating.outputs
+        opened = open_cockpit(resolved, assemble(resolved, plain)[0], stack)
+        (motor,) = opened.outputs
         assert isinstance(motor, WheelMotor)
-        assert {role for device in seating.identities for role in device.roles} >= {"wheel", "pedals"}
-        assert isinstance(seating.devices, MotorisedSource)
-        assert seating.devices.poll(1).wheel_motor == 1.0
+        assert {role for device in opened.identities for role in device.roles} >= {"wheel", "pedals"}
+        assert isinstance(opened.devices, MotorisedSource)
+        assert opened.devices.poll(1).wheel_motor == 1.0
     assert not motor.obeys, "closed with the session"
 
 

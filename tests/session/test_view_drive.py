@@ -72,7 +72,7 @@ def test_a_killed_view_is_shown_again_while_the_drive_goes_on(tmp_path: Path) ->
         drive.process.send_signal(signal.SIGINT)
         assert drive.process.wait(PATIENCE_S) == 130
     summary = open_bundle(tmp_path / "bundle").manifest.summary
-    assert summary["station_restarts"]["hud"] == 1
+    assert summary["worker_restarts"]["hud"] == 1
     assert verify(tmp_path / "bundle") == []
 
 

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from simconsole.profiles.faults import Place, Trigger
-from simconsole.tick.triggers import Moment, TriggerWatch, own_moment
+from simconsole.tick.triggers import TriggerWatch, WatchedVehicle, own_vehicle
 from simconsole.values.signals import FAR, Button, Event, Mode
 from simconsole.values.state_vector import Snapshot, columns
 
 TICK_HZ = 100
-FREE = Moment(x_m=0.0, y_m=0.0, distance_m=0.0, speed_mps=0.0, gap_m=FAR, closing_mps=0.0)
+FREE = WatchedVehicle(x_m=0.0, y_m=0.0, distance_m=0.0, speed_mps=0.0, gap_m=FAR, closing_mps=0.0)
 
 
 class Nothing(NamedTuple):
@@ -47,7 +47,9 @@ def snapshot(tick: int = 1, **values: float) -> Snapshot:
         ),
     ],
 )
-def test_a_trigger_comes_when_its_limit_is_passed_and_stays(trigger: Trigger, before: Moment, after: Moment) -> None:
+def test_a_trigger_comes_when_its_limit_is_passed_and_stays(
+    trigger: Trigger, before: WatchedVehicle, after: WatchedVehicle
+) -> None:
     watch = TriggerWatch(trigger, TICK_HZ)
     assert watch.turn(2, snapshot(1), before) is None
     assert watch.turn(3, snapshot(2), after) == 3
@@ -86,7 +88,7 @@ def test_modes_edges_and_the_button() -> None:
 
 def test_the_consoles_vehicle_is_seen_with_its_gap() -> None:
     row = {"vehicle__vx_mps": 10.0, "vehicle__x_m": 3.0, "ahead__lead_gap_m": 25.0, "ahead__lead_speed_mps": 4.0}
-    assert own_moment(snapshot(1, **row)) == Moment(3.0, 0.0, 0.0, 10.0, 25.0, 6.0)
+    assert own_vehicle(snapshot(1, **row)) == WatchedVehicle(3.0, 0.0, 0.0, 10.0, 25.0, 6.0)
     watch = TriggerWatch(Trigger(gap_below_m=26.0), TICK_HZ)
     assert watch.turn(2, snapshot(1)) is None, "nobody is ahead"
     assert watch.turn(3, snapshot(2, **row)) == 3

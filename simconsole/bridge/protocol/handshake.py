@@ -13,12 +13,12 @@ from urllib.parse import parse_qs, urlsplit
 
 import orjson
 
-from simconsole import __version__
 from simconsole.bridge.protocol.access import Access, Role
 from simconsole.bridge.protocol.client_session import ClientSession
 from simconsole.bridge.protocol.message_encoding import Dialect
 from simconsole.profiles.bridge import BridgeLimits, BridgeProfile
 from simconsole.values.errors import ProfileError, RemoteProtocolError
+from simconsole.values.version import __version__
 
 _LOCAL: Final = ("localhost", "127.0.0.1", "[::1]")
 _LOCAL_PAGE: Final = re.compile(r"https?://(?:localhost|127\.0\.0\.1|\[::1\])(?::\d{1,5})?")

@@ -309,7 +309,13 @@ def read_operation(fields: dict[str, Any]) -> Operation:
         # The one that comes a hundred times a second is spared the conversion of its untyped payload.
         kind = fields.get("type")
         if kind is None or type(kind) is str:
-            return Publish(fields["topic"], fields["msg"], id_of(fields), fields.get("latch") is True, None, kind)
+            return Publish(
+                topic=fields["topic"],
+                msg=fields["msg"],
+                id=id_of(fields),
+                latch=fields.get("latch") is True,
+                type=kind,
+            )
     if isinstance(qos, dict):
         lower = {key: value.lower() if isinstance(value, str) else value for key, value in qos.items()}
         fields = {**fields, "qos": lower}

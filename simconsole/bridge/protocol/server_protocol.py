@@ -101,7 +101,7 @@ class Router:
 
     @property
     def ros_time_ns(self) -> int:
-        """What a message that comes without a stamp is stamped with."""
+        """ROS time in ns: the stamp of a message that comes without one."""
         return self.topic_registry.ros_time_ns
 
     @ros_time_ns.setter

@@ -12,7 +12,7 @@ from weakref import finalize
 
 import msgspec
 
-from simconsole.cli.api.drive import Drive
+from simconsole.cli.api.recorded_drive import Drive
 from simconsole.drivers.own_controller import Controller, Observer, OwnCode
 from simconsole.evaluation.checks.scenario_check import Verdict, check_scenario
 from simconsole.profiles.session import SessionProfile

@@ -3,7 +3,7 @@
 import os
 from typing import Any, Final
 
-from simconsole.cli.arguments.command import command, number
+from simconsole.cli.arguments.subparser import command, number
 from simconsole.drivers.path_tracker.tracker_settings import GATE, TRACKERS
 from simconsole.processes.lifetimes import ATTACHED
 
@@ -73,7 +73,9 @@ def _scenario(commands: Any) -> None:
 
 
 def _turtlebot(commands: Any) -> None:
-    robots = command(commands, "turtlebot", "turtlebot.command:turtlebot", "three robots: map, share tasks out, drive")
+    robots = command(
+        commands, "turtlebot", "turtlebot.turtlebot_command:turtlebot", "three robots: map, share tasks out, drive"
+    )
     robots.add_argument("--session", default="turtlebot3_team", metavar="SESSION", help="with platforms, in an arena")
     robots.add_argument("--seed", type=int, default=0, metavar="N", help="of the errors of lidar and odometry")
     robots.add_argument(
@@ -84,7 +86,7 @@ def _turtlebot(commands: Any) -> None:
 
 
 def _sweep(commands: Any) -> None:
-    sweep = command(commands, "sweep", "sweep.command:sweep", "many drives of one plan into one table")
+    sweep = command(commands, "sweep", "sweep.sweep_command:sweep", "many drives of one plan into one table")
     sweep.add_argument("plan", metavar="PLAN", help="a .yaml file: sessions or scenarios, values, seeds")
     sweep.add_argument("--jobs", type=int, default=os.cpu_count() or 1, metavar="N", help="processes (default: cores)")
     sweep.add_argument("--engine", choices=("local", "dask"), default="local", help="where: here, or Dask's workers")

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from simconsole.cli.arguments.command import command
+from simconsole.cli.arguments.subparser import command
 
 
 def tools(commands: Any) -> None:
@@ -10,7 +10,7 @@ def tools(commands: Any) -> None:
     _devices(commands)
     _world(commands)
     _bridge(commands)
-    new = command(commands, "new", "new.command:new", "a template that runs at once, with a test beside it")
+    new = command(commands, "new", "new.new_command:new", "a template that runs at once, with a test beside it")
     new.add_argument("kind", choices=("controller", "scenario", "vehicle", "platform", "world", "session"))
     new.add_argument("name", metavar="NAME", help="lower-case letters, digits and _")
     new.add_argument("--out", metavar="DIR", default=".", help="where (default: here)")

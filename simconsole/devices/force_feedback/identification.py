@@ -25,8 +25,10 @@ STROKE_RAD: Final = 4.0 * RAD_PER_DEG
 RAISED: Final = 1.4
 """A stroke that was too weak is tried again with so many times its torque."""
 STROKE_RADPS: Final = 45.0 * RAD_PER_DEG
-MOST_RAD: Final = 15.0 * RAD_PER_DEG
-MOST_RADPS: Final = 120.0 * RAD_PER_DEG
+LET_GO_RAD: Final = 11.0 * RAD_PER_DEG
+LET_GO_RADPS: Final = 70.0 * RAD_PER_DEG
+"""A wheel that is further off or faster is let go of: what is left to 15 deg and 120 deg/s is for the delay. One that
+nobody holds stays below 9 deg and 50 deg/s, whatever its motor (inertia and torque half to twice the profile's)."""
 RATE_S: Final = 0.012
 """A rate is the way of so long: a wheel's angle comes in steps."""
 PULSE_S: Final = 0.12
@@ -68,7 +70,7 @@ class Tape:
         """Let a tick pass; a new torque begins at every second tick only.
 
         Raises:
-            DeviceError: the wheel is beyond MOST_RAD or MOST_RADPS; it has been let go of.
+            DeviceError: the wheel is beyond LET_GO_RAD or LET_GO_RADPS; it has been let go of.
         """
         if len(self.asked_nm) % HELD_TICKS:
             torque_nm = self.asked_nm[-1]
@@ -79,7 +81,7 @@ class Tape:
         self.rad.append(rad)
         ticks = min(len(self.rad) - 1, round(RATE_S * self.tick_hz))
         radps = abs(rad - self.rad[-1 - ticks]) * self.tick_hz / max(ticks, 1)
-        if abs(rad) > MOST_RAD or radps > MOST_RADPS:
+        if abs(rad) > LET_GO_RAD or radps > LET_GO_RADPS:
             self._turn(0.0)
             raise DeviceError("wheel: motion: value too fast or too far: a wheel that nobody holds; identify again")
         return rad
@@ -89,6 +91,9 @@ def identify(
     turn: Turn, force: ForceFeedback, strength: float, tick_hz: int, say: Callable[[str], None] = lambda line: None
 ) -> Identified:
     """Find a motor's figures; the wheel stays within 15 deg and 120 deg/s.
+
+    A wheel that somebody holds against the motor and then lets go of has the torque of those hands until the delay is
+    over: with twice the profile's torque on half its inertia it has been seen at 170 deg/s before it was let go of.
 
     Args:
         turn: The wheel, free to turn: returns the angle from where it was at first, before this torque acts.

@@ -86,7 +86,9 @@ class _Report:
         Raises:
             DeviceError: the file cannot be written.
         """
-        profile_part = {} if profile is None else {"profile": ACCEPTED, "provenance": profile.provenance}
+        profile_part = (
+            {} if profile is None else {"profile": ACCEPTED, "provenance": msgspec.to_builtins(profile.provenance)}
+        )
         ok = profile is not None and all(step["ok"] for step in self.steps)
         report = {**self._head, "ok": ok, "steps": self.steps, **profile_part}
         try:

@@ -23,6 +23,12 @@ def jerks(accel_mps2: NDArray[np.float64], tick_hz: float) -> NDArray[np.float64
     return np.diff(np.convolve(accel_mps2, np.full(count, 1.0 / count), "valid")) * tick_hz
 
 
+def longest(holds: NDArray[np.bool_], tick_hz: float) -> float:
+    """Return the time for which something holds without a break, the longest one, in s."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], holds.astype(np.int8), [0]))))
+    return float(np.max(edges[1::2] - edges[::2], initial=0) / tick_hz)
+
+
 def observed(spec: Observed, car: Platform, duration_s: float) -> Driving:
     """Drive the scenario's script and describe the part of it that counts."""
     driven = yield Attempt("script", None, duration_s)
@@ -34,6 +40,7 @@ def observed(spec: Observed, car: Platform, duration_s: float) -> Driving:
     ax = seen.column("vehicle.ax_mps2")
     engine = seen.column("vehicle.engine_radps") * RPM_PER_RADPS
     running = seen.column("vehicle.engine_running")
+    neutral = (seen.column("vehicle.gear") == 0.0) & (seen.column("command.gear") != 0.0)
     values = {
         "highest_speed_mps": float(speed.max()),
         "lowest_speed_mps": float(speed.min()),
@@ -51,6 +58,7 @@ def observed(spec: Observed, car: Platform, duration_s: float) -> Driving:
         "highest_engine_speed_rpm": float(engine.max()),
         "engine_stalled": float((running == 0.0).any()),
         "end_engine_running": float(running[-1]),
+        "longest_neutral_s": longest(neutral, driven.tick_hz),  # though a gear is asked for; a shift takes its pause
         "clutch_overheated": float((seen.column("vehicle.gear_fault") >= GearFault.CLUTCH_HOT).any()),
     }
     panels = (

@@ -27,7 +27,7 @@ Told = Callable[[str, float], object]
 
 
 def _untold(what: str, share: float) -> None:
-    """Let nobody know."""
+    """Tell nothing: the default of `Told`."""
 
 
 def write_exports(folder: Path, report: bool = True, scene: bool = True, told: Told = _untold) -> dict[str, Any]:

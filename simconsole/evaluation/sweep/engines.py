@@ -8,8 +8,8 @@ from typing import Any, Final
 
 import msgspec
 
-from simconsole.evaluation.sweep.lane import Lanes
 from simconsole.evaluation.sweep.task import Task, TaskResult, from_bytes, to_bytes
+from simconsole.evaluation.sweep.worker_pool import WorkerPool
 from simconsole.values.errors import SimConsoleError
 
 _TRIES: Final = 3
@@ -21,17 +21,17 @@ def drive_here(tasks: Sequence[Task], jobs: int) -> Generator[TaskResult, None, 
 
     The first drive is alone: what has to be compiled is compiled once, before the other processes start.
     """
-    lanes = Lanes()
-    with ThreadPoolExecutor(jobs) as pool:
+    pool = WorkerPool()
+    with ThreadPoolExecutor(jobs) as threads:
         try:
             if tasks:
-                yield pool.submit(lanes.drive, tasks[0]).result()
-            waiting: list[Future[TaskResult]] = [pool.submit(lanes.drive, task) for task in tasks[1:]]
+                yield threads.submit(pool.drive, tasks[0]).result()
+            waiting: list[Future[TaskResult]] = [threads.submit(pool.drive, task) for task in tasks[1:]]
             for future in as_completed(waiting):
                 yield future.result()
         finally:
-            pool.shutdown(wait=False, cancel_futures=True)
-            lanes.close()
+            threads.shutdown(wait=False, cancel_futures=True)
+            pool.close()
 
 
 def drive_on_dask(tasks: Sequence[Task], scheduler: str) -> Generator[TaskResult, None, None]:
@@ -62,7 +62,7 @@ def drive_on_dask(tasks: Sequence[Task], scheduler: str) -> Generator[TaskResult
                 future.release()
         finally:
             client.cancel(list(futures))
-            client.run(close_lanes)
+            client.run(close_pool)
 
 
 @contextmanager
@@ -77,24 +77,24 @@ def _client(scheduler: str) -> Iterator[Any]:
         yield client
 
 
-_lanes: Lanes | None = None
+_pool: WorkerPool | None = None
 _lock: Final = threading.Lock()
 
 
 def drive_line(line: bytes) -> bytes:
-    """Drive the task in a line of JSON in a lane of the calling thread, and return its result likewise: for workers."""
-    global _lanes  # of the worker's process, for all its threads
+    """Drive the task in a line of JSON in the calling thread's process, and return its result likewise: for Dask."""
+    global _pool  # of Dask's worker, for all its threads
     with _lock:
-        if _lanes is None:
-            _lanes = Lanes()
-        lanes = _lanes
-    return msgspec.json.encode(lanes.drive(from_bytes(line)))
+        if _pool is None:
+            _pool = WorkerPool()
+        pool = _pool
+    return msgspec.json.encode(pool.drive(from_bytes(line)))
 
 
-def close_lanes() -> None:
+def close_pool() -> None:
     """End the processes that `drive_line` has started."""
-    global _lanes
+    global _pool
     with _lock:
-        lanes, _lanes = _lanes, None
-    if lanes is not None:
-        lanes.close()
+        pool, _pool = _pool, None
+    if pool is not None:
+        pool.close()

@@ -10,7 +10,6 @@ from typing import NamedTuple
 import msgspec
 import numpy as np
 
-from simconsole import __version__
 from simconsole.evaluation.sweep.task import Task, to_bytes
 from simconsole.profiles.files.loader import MAX_BYTES, read_text_of
 from simconsole.profiles.scenario import ScenarioProfile
@@ -29,6 +28,7 @@ from simconsole.session.resolution import (
 )
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import ProfileError
+from simconsole.values.version import __version__
 
 LONGEST_S = 3600.0
 """Simulated time of a session's drive that nothing else ends."""

@@ -8,7 +8,7 @@ import numpy as np
 from msgspec.structs import replace
 from numpy.typing import NDArray
 
-from simconsole.evaluation.video.moments import Moment
+from simconsole.evaluation.video.moments import VideoFrame
 from simconsole.hud.driver_view.scene import NO_MODELS, Models
 from simconsole.hud.gl.cockpit_picture import CockpitPicture
 from simconsole.hud.gl.context import renderer_name, windowless_context
@@ -70,12 +70,12 @@ class DrivePictures:
         self._target = context.simple_framebuffer((wanted.width_px, wanted.height_px), components=RGB)
         self._memory = DisplayMemory(settings)
 
-    def pass_over(self, earlier: Iterator[Moment]) -> None:
+    def pass_over(self, earlier: Iterator[VideoFrame]) -> None:
         """Let the instruments see moments that are not drawn: what they show depends on what was before."""
         for moment in earlier:
             self._memory.content(moment.snapshot, moment.t_s, None, None)
 
-    def draw(self, moment: Moment) -> Pixels:
+    def draw(self, moment: VideoFrame) -> Pixels:
         """Return one frame as red, green and blue, uint8 [height, width, 3] from the top."""
         content = self._memory.content(moment.snapshot, moment.t_s, None, None)
         self._picture.draw(self._target, moment.shown, content)
@@ -83,7 +83,7 @@ class DrivePictures:
         data = np.frombuffer(self._target.read(components=RGB, alignment=1), np.uint8)
         return np.ascontiguousarray(data.reshape(height, width, RGB)[::-1])
 
-    def draw_all(self, frames: Iterator[Moment]) -> Iterator[Pixels]:
+    def draw_all(self, frames: Iterator[VideoFrame]) -> Iterator[Pixels]:
         """Yield every frame."""
         return (self.draw(moment) for moment in frames)
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simconsole.evaluation.video.moments import Moment
+from simconsole.evaluation.video.moments import VideoFrame
 from simconsole.hud.sound.directions import Samples, to_stereo
 from simconsole.hud.sound.heard import Listener
 from simconsole.hud.sound.loops import RATE_HZ
@@ -26,7 +26,7 @@ class DriveSound:
         self._fps = fps
         self._frames = 0
 
-    def frame(self, moment: Moment) -> Samples:
+    def frame(self, moment: VideoFrame) -> Samples:
         """Return the samples of one frame, float32 [samples, 2] within -1 and 1."""
         before, self._frames = self._frames, self._frames + 1
         count = self._frames * RATE_HZ // self._fps - before * RATE_HZ // self._fps

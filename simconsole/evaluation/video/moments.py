@@ -20,7 +20,7 @@ class _Nothing(NamedTuple):
     """The state of no platform: a picture needs none of it."""
 
 
-class Moment(NamedTuple):
+class VideoFrame(NamedTuple):
     """One frame: the newest tick before it, and the vehicle where it is then, between two ticks."""
 
     t_s: float
@@ -28,7 +28,7 @@ class Moment(NamedTuple):
     shown: ShownVehicle
 
 
-def moments(recording: Recording, from_s: float, to_s: float | None, fps: int) -> Iterator[Moment]:
+def moments(recording: Recording, from_s: float, to_s: float | None, fps: int) -> Iterator[VideoFrame]:
     """Yield a recorded drive at `fps` from `from_s` on, up to `to_s` (None: its end), in simulated time.
 
     Raises:
@@ -43,12 +43,12 @@ def moments(recording: Recording, from_s: float, to_s: float | None, fps: int) -
         while older is not None and (at_s := first_s + frame / fps) < newer.t_s:
             if to_s is not None and at_s > to_s:
                 return
-            yield Moment(at_s, older, traffic.beside(moved(older, newer, at_s - older.t_s), older.tick))
+            yield VideoFrame(at_s, older, traffic.beside(moved(older, newer, at_s - older.t_s), older.tick))
             frame += 1
         older = newer
     at_s = first_s + frame / fps
     if older is not None and at_s <= older.t_s + 0.5 / tick_hz and (to_s is None or at_s <= to_s):
-        yield Moment(at_s, older, traffic.beside(shown_vehicle(older), older.tick))
+        yield VideoFrame(at_s, older, traffic.beside(shown_vehicle(older), older.tick))
         frame += 1
     if frame == 0:
         ends = "no tick was recorded" if older is None else f"the drive ends at {older.t_s:g} s"

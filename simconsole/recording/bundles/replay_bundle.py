@@ -7,7 +7,6 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
-from simconsole import __version__
 from simconsole.profiles.files.world_files import located, with_kind
 from simconsole.profiles.strict_yaml import parse
 from simconsole.profiles.validation import convert
@@ -16,10 +15,11 @@ from simconsole.recording.replay import Remade, ReplayResult, replay
 from simconsole.tick.advance import Console, ConsoleState, advance_vector, decide
 from simconsole.tick.assembly import ResolvedSession, assemble
 from simconsole.values.errors import RecordingError
-from simconsole.values.host import jit as compiling
+from simconsole.values.host import jit
 from simconsole.values.host.jit import compiled
 from simconsole.values.signals import NO_COMMAND, NO_EVENTS, NO_SAMPLE
 from simconsole.values.state_vector import TickInputs, input_vector
+from simconsole.values.version import __version__
 from simconsole.world.obstacles.striking import strike
 from simconsole.world.rules.situation import look_around
 
@@ -47,8 +47,8 @@ def sources_sha256(console: Console) -> str:
     """Return what a log says of the sources that made its state vectors."""
     on = console.platform
     # A step that is not compiled is whatever its package makes of it: it says itself by what it is known, if at all.
-    step = compiling.digest(on.step) if on.compiled else str(getattr(on.step, "digest", on.name))
-    sources = "".join((compiling.digest(decide), compiling.digest(strike), step, compiling.digest(look_around)))
+    step = jit.digest(on.step) if on.compiled else str(getattr(on.step, "digest", on.name))
+    sources = "".join((jit.digest(decide), jit.digest(strike), step, jit.digest(look_around)))
     return hashlib.sha256(sources.encode()).hexdigest()
 
 

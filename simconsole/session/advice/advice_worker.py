@@ -75,7 +75,7 @@ class AdviceWorker(Worker, frozen=True, kw_only=True):
         from simconsole.bridge.transport.addresses import reached_here
         from simconsole.drivers.autopilot.lights import SIGNALS, SIGNALS_TYPE, lights_of
         from simconsole.drivers.autopilot.motion import Odometry, motion_of
-        from simconsole.drivers.autopilot.program import ODOMETRY
+        from simconsole.drivers.autopilot.rosbridge_autopilot import ODOMETRY
 
         odometry, signals = (self.rename.get(topic, self.namespace + topic) for topic in (ODOMETRY, SIGNALS))
         with BridgeClient(

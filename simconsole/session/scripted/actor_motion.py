@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Final, NamedTuple, Protocol
 
 from simconsole.profiles.traffic import Act, Actor, Vertex
-from simconsole.tick.triggers import Moment
+from simconsole.tick.triggers import WatchedVehicle
 from simconsole.values.kernels import approach
 from simconsole.values.platform import Pose
 from simconsole.values.signals import FAR
@@ -119,9 +119,9 @@ class MovingActor:
         self.distance_m += moved_m
         self.pose = self._beside()
 
-    def moment(self) -> Moment:
+    def watched(self) -> WatchedVehicle:
         """Return it as a trigger looks at it, without a gap."""
-        return Moment(
+        return WatchedVehicle(
             x_m=self.pose.x_m,
             y_m=self.pose.y_m,
             distance_m=self.distance_m,

@@ -5,7 +5,7 @@ from typing import Final, NamedTuple
 
 from simconsole.profiles.traffic import Act, Actor
 from simconsole.session.scripted.actor_motion import MovingActor, straight
-from simconsole.tick.triggers import Moment, TriggerWatch, own_moment
+from simconsole.tick.triggers import TriggerWatch, WatchedVehicle, own_vehicle
 from simconsole.values.errors import ProfileError
 from simconsole.values.platform import Pose
 from simconsole.values.state_vector import Snapshot
@@ -96,12 +96,12 @@ class ScriptedActors:
         """Change the speed of actor `number`, who has collided."""
         list(self._actors.values())[int(number) - 1].crash(change_mps)
 
-    def _seen(self, act: Act, snapshot: Snapshot) -> Moment | None:
+    def _seen(self, act: Act, snapshot: Snapshot) -> WatchedVehicle | None:
         """Return whom an act's trigger looks at; None: the console's vehicle and whom it follows."""
         if act.of is None and act.to is None:
             return None
-        own = own_moment(snapshot)
-        one = own if act.of is None else self._actors[act.of].moment()
+        own = own_vehicle(snapshot)
+        one = own if act.of is None else self._actors[act.of].watched()
         if act.of == act.to:
             return one
         here = self._ego if act.of is None else self._actors[act.of].box()

@@ -86,7 +86,7 @@ def make_step(ground_of: BallGroundModel) -> Step:
         p = read(parameters, PARAMETERS)
         command = read(row, LAYOUT.command)
         state = read(previous, BALL)
-        brake = clip(command.brake, 0.0, 1.0) if is_finite(command.brake) else 0.0
+        brake = command.brake if is_finite(command.brake) else 0.0
         following = is_finite(command.target_speed_mps) and command.target_speed_mps > 0.0
         following = following and is_finite(command.target_x_m) and is_finite(command.target_y_m)
         for _ in range(substeps):
@@ -187,7 +187,7 @@ def follow(s: BallState, p: BallParameters, on: BallGround, command: VehicleComm
 @kernel
 def pushed(s: BallState, p: BallParameters, on: BallGround, command: VehicleCommand, brake: float) -> BallState:
     """Return the ball 1 ms later under the person: throttle pushes along the heading, the wheel turns it."""
-    throttle = clip(command.throttle, 0.0, 1.0) if is_finite(command.throttle) else 0.0
+    throttle = command.throttle if is_finite(command.throttle) else 0.0
     angle = command.road_wheel_rad if is_finite(command.road_wheel_rad) else 0.0
     turn = STEP_S * p.turn_per_s * clip(angle, -p.max_road_wheel_rad, p.max_road_wheel_rad)
     way = -1.0 if command.gear < 0.0 else 1.0

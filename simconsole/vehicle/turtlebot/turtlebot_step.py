@@ -53,7 +53,7 @@ def step(previous: Row, row: Row, parameters: Row, ground: Row, substeps: int) -
     p = read(parameters, PARAMETERS)
     command = read(row, LAYOUT.command)
     before = read(previous, ROBOT)
-    brake = clip(command.brake, 0.0, 1.0) if is_finite(command.brake) else 0.0
+    brake = command.brake if is_finite(command.brake) else 0.0
     wanted = wanted_wheels(p, command, brake)
     most = STEP_S * (p.accel_mps2 + brake * p.brake_mps2) / p.wheel_radius_m
     motion = before.motion
@@ -71,7 +71,7 @@ def step(previous: Row, row: Row, parameters: Row, ground: Row, substeps: int) -
 @kernel
 def wanted_wheels(p: RobotParameters, command: VehicleCommand, brake: float) -> Wheels:
     """Return the wheel speeds that are asked for, each limited by itself as the motors' controller does."""
-    throttle = clip(command.throttle, 0.0, 1.0) if is_finite(command.throttle) else 0.0
+    throttle = command.throttle if is_finite(command.throttle) else 0.0
     steering = command.road_wheel_rad if is_finite(command.road_wheel_rad) else 0.0
     speed = command.target_speed_mps if is_finite(command.target_speed_mps) else 0.0
     turn = command.target_yaw_rate_radps if is_finite(command.target_yaw_rate_radps) else 0.0

@@ -6,7 +6,7 @@ import pytest
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.console.published_tick import ONCE, quaternion
-from simconsole.bridge.console.topics import is_due
+from simconsole.bridge.console.topics import VELOCITY, is_due
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.link import LinkProfile, LocalisationProfile
 from simconsole.values.signals import NEVER_TICKS, Event, Mode, Reason
@@ -195,15 +195,15 @@ def test_quaternion_is_the_rotation(roll: float, pitch: float, yaw: float) -> No
 
 
 def test_with_errors_a_controller_gets_no_ground_truth_unless_it_is_granted(snapshot: Callable[..., Any]) -> None:
-    noise = LocalisationProfile(position_noise_m=0.5, yaw_noise_deg=5.0)
+    noise = LocalisationProfile(position_noise_m=0.5, yaw_noise_deg=5.0, speed_noise_mps=0.5, yaw_rate_noise_degps=5.0)
     hidden = ConsoleBridge(BridgeProfile(link=LinkProfile(localisation=noise)))
     assert "/ground_truth/odom" not in hidden.router.topics
     shown = Peer(ConsoleBridge(BridgeProfile(link=LinkProfile(localisation=noise, ground_truth=True))))
-    for topic in ("/odom", "/ground_truth/odom", "/tf", "/imu/data"):
+    for topic in ("/odom", "/ground_truth/odom", "/tf", "/imu/data", VELOCITY):
         shown.send(op="subscribe", topic=topic)
     shown.bridge.publish(snapshot(125), 0)
     shown.heard()
-    shown.bridge.publish(snapshot(375, x_m=3.0, yaw_rad=0.5), 0)
+    shown.bridge.publish(snapshot(375, x_m=3.0, yaw_rad=0.5, vx_mps=8.0, yaw_rate_radps=0.2), 0)
     messages = {message["topic"]: message["msg"] for message in shown.heard()}
     truth, odometry = (messages[topic]["pose"] for topic in ("/ground_truth/odom", "/odom"))
     assert truth["pose"]["position"]["x"] == 3.0
@@ -214,3 +214,7 @@ def test_with_errors_a_controller_gets_no_ground_truth_unless_it_is_granted(snap
     (transform,) = messages["/tf"]["transforms"]
     assert transform["transform"]["translation"]["x"] == odometry["pose"]["position"]["x"]
     assert messages["/imu/data"]["orientation"] == odometry["pose"]["orientation"]
+    told, speeds = messages[VELOCITY], messages["/odom"]["twist"]["twist"]
+    assert told["longitudinal_velocity"] == pytest.approx(speeds["linear"]["x"], abs=1e-6) != 8.0
+    assert told["heading_rate"] == pytest.approx(speeds["angular"]["z"], abs=1e-6) != 0.2
+    assert messages["/ground_truth/odom"]["twist"]["twist"]["linear"]["x"] == 8.0

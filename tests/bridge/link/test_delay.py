@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from simconsole.bridge.link.delay import LateCommands, over_link
+from simconsole.bridge.link.delay import CommandsOverLink, over_link
 from simconsole.profiles.link import LinkProfile
 from simconsole.values.kernels import Row
 from simconsole.values.signals import NO_COMMAND, EventInput, RemoteCommand
@@ -70,7 +70,7 @@ class Foreseeing(Controller):
 def test_what_is_foreseen_is_what_is_taken(link: LinkProfile, kept: int) -> None:
     """It may be asked again for the same ticks: a block may end before what was foreseen."""
     source = over_link(Foreseeing(), link, TICK_HZ)
-    assert isinstance(source, LateCommands)
+    assert isinstance(source, CommandsOverLink)
     expected = [list(command) for command in taken(link, 3000)]
     rows = np.zeros((64, len(NO_COMMAND)))
     seen: list[list[float]] = []
@@ -87,7 +87,7 @@ def test_the_next_command_is_not_foreseen_before_it_is_sent() -> None:
     controller = Foreseeing()
     controller.periods = 3
     source = over_link(controller, link, TICK_HZ)
-    assert isinstance(source, LateCommands)
+    assert isinstance(source, CommandsOverLink)
     rows = np.zeros((64, len(NO_COMMAND)))
     seen: list[list[float]] = []
     while len(seen) < 500:
@@ -100,7 +100,7 @@ def test_the_next_command_is_not_foreseen_before_it_is_sent() -> None:
 
 def test_without_a_source_that_foresees_nothing_is_foreseen() -> None:
     source = over_link(Controller(), LinkProfile(delay_ms=40.0), TICK_HZ)
-    assert isinstance(source, LateCommands)
+    assert isinstance(source, CommandsOverLink)
     assert source.foresee(1, np.zeros((5, len(NO_COMMAND)))) == 0
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from simconsole.cli.new.command import KINDS
+from simconsole.cli.new.new_command import KINDS
 
 TEXTS = {(kind, file): text for kind, files in KINDS.items() for file, text in files.items()}
 

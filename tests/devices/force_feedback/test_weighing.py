@@ -24,12 +24,13 @@ def test_scale_is_found(t500: CockpitProfile, sample: Sample, record_property: C
     for draw in (STICKY, *draws(np.random.default_rng(sample.seed), sample.of(2, 50))):
         wheel = BenchedWheel(force, draw)
         found = identify(wheel.turn, force, 0.4, TICK_HZ)
-        wheel.furthest_rad = 0.0
+        wheel.furthest_rad = wheel.fastest_radps = 0.0
         wheel.hung_nm = WEIGHT_NM
         scale = weighed(wheel.turn, found, WEIGHT_NM, 0.8 * force.max_torque_nm, TICK_HZ, wheel.take_off)
         worst = max(worst, abs(scale / wheel.scale - 1.0))
         assert worst <= 0.05, (draw, scale)
         assert wheel.furthest_rad <= np.radians(12.0), draw
+        assert wheel.fastest_radps <= np.radians(120.0), draw
     record_property("torque by a weight", f"within {worst:.1%}")
 
 

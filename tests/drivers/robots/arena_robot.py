@@ -10,7 +10,6 @@ from simconsole.drivers.robots.slam.odometry_track import Array
 from simconsole.drivers.robots.slam.planar import ORIGIN, composed
 from simconsole.drivers.robots.slam.rays import Turn
 from simconsole.profiles.files.vehicle_files import load_vehicle
-from simconsole.profiles.files.world_files import load_world
 from simconsole.profiles.vehicle import TurtlebotProfile
 from simconsole.profiles.world import ArenaProfile
 from simconsole.values.host.jit import compiled
@@ -18,6 +17,7 @@ from simconsole.values.platform import Pose
 from simconsole.world.arena.lidar import Beam, End, sweep
 from simconsole.world.arena.outlines import Outlines, outlines_of
 from simconsole.world.arena.raycast import ray_grid
+from tests.world.arena.shipped_arena import arena
 
 STEP_S = 0.02
 SCAN_STEPS = 10
@@ -26,12 +26,6 @@ RAYS = 360
 MAX_M = 3.5
 NOISE_M = 0.01
 START = Pose(0.8, 0.8, 0.0)
-
-
-def arena() -> ArenaProfile:
-    profile = load_world("arena")
-    assert isinstance(profile, ArenaProfile)
-    return profile
 
 
 def shape(robot: str) -> RobotShape:

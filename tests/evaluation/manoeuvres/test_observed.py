@@ -24,6 +24,8 @@ def test_a_watched_drive_is_described() -> None:
         vehicle__engine_radps=100.0 * time_s,
         vehicle__engine_running=running,
         vehicle__distance_m=time_s,
+        vehicle__gear=np.where((time_s > 1.5) & (time_s <= 1.75) | (time_s > 2.5), 0.0, 1.0),
+        command__gear=np.where(time_s > 2.5, 0.0, 1.0),
         vehicle__gear_fault=np.where(time_s > 3.5, 8.0, 1.0),
     )
     with pytest.raises(StopIteration) as end:
@@ -34,6 +36,7 @@ def test_a_watched_drive_is_described() -> None:
     assert values["rolled_back_m"] == pytest.approx(2.0, abs=0.01)
     assert values["lowest_engine_speed_rpm"] == pytest.approx(955.0, abs=5.0)
     assert values["highest_jerk_mps3"] == pytest.approx(1.0), "the acceleration rises by 1 m/s2 in a second"
+    assert values["longest_neutral_s"] == pytest.approx(0.25, abs=0.01), "the neutral that is asked for does not count"
     assert values["clutch_overheated"] == 0.0, "a grating gear, and the heat comes after the part that counts"
 
 

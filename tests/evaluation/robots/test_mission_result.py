@@ -8,7 +8,7 @@ from simconsole.evaluation.metrics.trajectory_errors import TrajectoryErrors
 from simconsole.evaluation.robots.mission_result import MissionResult, RobotResult
 from simconsole.world.arena.occupancy import grid_of
 from simconsole.world.arena.outlines import outlines_of
-from tests.drivers.robots.arena_robot import arena
+from tests.world.arena.shipped_arena import arena
 
 ERRORS = TrajectoryErrors(0.012, 0.02, 0.001, 0.001, 0.001)
 RAW = TrajectoryErrors(0.5, 1.0, 0.1, 0.01, 0.01)

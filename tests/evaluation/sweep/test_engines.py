@@ -7,7 +7,7 @@ import pytest
 from simconsole.evaluation.sweep.engines import drive_here, drive_on_dask
 from simconsole.evaluation.sweep.task import TaskResult, drive_task
 from simconsole.values.errors import SimConsoleError
-from tests.evaluation.sweep.clusters import cluster, kill, lanes_of
+from tests.evaluation.sweep.clusters import cluster, kill, pool_workers_of
 from tests.evaluation.sweep.plans import grip
 from tests.patience import wait_until
 
@@ -16,21 +16,21 @@ def by_index(results: list[TaskResult]) -> list[TaskResult]:
     return sorted(results, key=lambda result: result.index)
 
 
-def test_lanes_of_this_machine_give_what_one_process_gives_though_one_is_killed(tmp_path: Path) -> None:
+def test_workers_of_this_machine_give_what_one_process_gives_though_one_is_killed(tmp_path: Path) -> None:
     tasks = grip(tmp_path, 8).tasks
     with closing(drive_here(tasks, 2)) as driven:
         results = [next(driven)]
-        kill(lanes_of(os.getpid())[0])
+        kill(pool_workers_of(os.getpid())[0])
         results += driven
     assert by_index(results) == [drive_task(task) for task in tasks]
-    wait_until(lambda: not lanes_of(os.getpid()), "the lanes' end")
+    wait_until(lambda: not pool_workers_of(os.getpid()), "the workers' end")
 
 
 def test_a_sweep_that_is_given_up_leaves_no_process(tmp_path: Path) -> None:
     driven = drive_here(grip(tmp_path, 8).tasks, 2)
     next(driven)
     driven.close()
-    wait_until(lambda: not lanes_of(os.getpid()), "the lanes' end")
+    wait_until(lambda: not pool_workers_of(os.getpid()), "the workers' end")
 
 
 def test_dasks_workers_give_the_same_though_one_is_killed(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from simconsole.evaluation.video.drive_pictures import CameraName, DrivePictures, Pixels, Wanted
-from simconsole.evaluation.video.moments import Moment, moments
+from simconsole.evaluation.video.moments import VideoFrame, moments
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.replay_bundle import recorded_session
 from simconsole.tick.assembly import ResolvedSession
@@ -24,39 +24,39 @@ def resolved(short: Path) -> ResolvedSession:
 
 
 @pytest.fixture(scope="module")
-def found(short: Path) -> list[Moment]:
+def found(short: Path) -> list[VideoFrame]:
     return list(moments(open_bundle(short).log, 1.0, 2.9, 4))
 
 
-def pictures(resolved: ResolvedSession, found: list[Moment], camera: CameraName = "driver") -> list[Pixels]:
+def pictures(resolved: ResolvedSession, found: list[VideoFrame], camera: CameraName = "driver") -> list[Pixels]:
     return list(DrivePictures(resolved, Wanted(*SIZE, camera)).draw_all(iter(found)))
 
 
-def test_the_same_moments_give_the_same_pictures(resolved: ResolvedSession, found: list[Moment]) -> None:
+def test_the_same_moments_give_the_same_pictures(resolved: ResolvedSession, found: list[VideoFrame]) -> None:
     first, again = pictures(resolved, found), pictures(resolved, found)
     assert all((one == other).all() for one, other in zip(first, again, strict=True))
     assert first[0].shape == (480, 640, 3)
     assert (first[0] != first[-1]).any(), "the car has driven off"
 
 
-def test_the_sky_is_above_and_the_instruments_below(resolved: ResolvedSession, found: list[Moment]) -> None:
+def test_the_sky_is_above_and_the_instruments_below(resolved: ResolvedSession, found: list[VideoFrame]) -> None:
     picture = pictures(resolved, found[:1])[0].astype(int)
     sky, strip = picture[40:60].mean(axis=(0, 1)), picture[-60:].mean(axis=(0, 1))
     assert sky[2] > sky[0]
     assert np.mean(strip) < 0.6 * np.mean(sky)
 
 
-def test_each_camera_sees_something_else(resolved: ResolvedSession, found: list[Moment]) -> None:
+def test_each_camera_sees_something_else(resolved: ResolvedSession, found: list[VideoFrame]) -> None:
     seen = {camera: pictures(resolved, found[:1], camera)[0] for camera in ("driver", "chase", "bird")}
     road = slice(0, 240)
     assert (seen["driver"][road] != seen["chase"][road]).any()
     assert (seen["chase"][road] != seen["bird"][road]).any()
 
 
-def test_the_instruments_remember_what_is_passed_over(resolved: ResolvedSession, found: list[Moment]) -> None:
+def test_the_instruments_remember_what_is_passed_over(resolved: ResolvedSession, found: list[VideoFrame]) -> None:
     """Why the car was stopped: STOPPED itself only says that it stands."""
 
-    def in_mode(moment: Moment, mode: Mode, reason: Reason) -> Moment:
+    def in_mode(moment: VideoFrame, mode: Mode, reason: Reason) -> VideoFrame:
         vector = moment.snapshot.vector.copy()
         arbitration = moment.snapshot.arbitration._replace(mode=float(mode), reason=float(reason))
         put(vector, LAYOUT.arbitration.start, arbitration)

@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 
 from simconsole.evaluation.video.drive_sound import DriveSound
-from simconsole.evaluation.video.moments import Moment
+from simconsole.evaluation.video.moments import VideoFrame
 from simconsole.hud.driver_view.motion import shown_vehicle
 from simconsole.hud.sound.loops import RATE_HZ
 from simconsole.session.resolution import load_session, resolve
 from tests.hud.test_view import snapshot
 
 
-def moment(frame: int, rpm: float) -> Moment:
+def moment(frame: int, rpm: float) -> VideoFrame:
     now = snapshot(vehicle__engine_radps=rpm * math.pi / 30.0, vehicle__engine_running=1.0, command__throttle=0.5)
     now = now._replace(tick=10 * frame)
-    return Moment(now.t_s, now, shown_vehicle(now))
+    return VideoFrame(now.t_s, now, shown_vehicle(now))
 
 
 @pytest.mark.parametrize("fps", [24, 25, 30, 60])

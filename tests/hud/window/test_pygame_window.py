@@ -1,7 +1,6 @@
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
 
 import numpy as np
 import pygame
@@ -14,14 +13,9 @@ from simconsole.profiles.view import HudProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.state_vector import PLATFORM_AT, Snapshot
 
+pytestmark = pytest.mark.usefixtures("dummy_display")
+
 PROFILE = HudProfile(width_px=700, height_px=525, screen_width_m=1.6, eye_distance_m=1.1, rate_hz=240)
-
-
-@pytest.fixture(autouse=True)
-def dummy_display(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
-    yield
-    pygame.display.quit()
 
 
 def snapshot(tick: int) -> Snapshot:

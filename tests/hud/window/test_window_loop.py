@@ -21,16 +21,12 @@ from simconsole.profiles.view import HudProfile
 from simconsole.values.key_codes import Key
 from simconsole.values.state_vector import PLATFORM_AT, Snapshot
 from tests.hud.window.x_server import SIZE, hands, x_server
+from tests.patience import PATIENCE_S
+
+pytestmark = pytest.mark.usefixtures("dummy_display")
 
 PROFILE = HudProfile(width_px=700, height_px=525, screen_width_m=1.6, eye_distance_m=1.1, rate_hz=240)
 SETTINGS = HudSettings(help_rows=(("Up, W", "throttle"), ("F1", "this help")))
-
-
-@pytest.fixture(autouse=True)
-def dummy_display(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
-    yield
-    pygame.display.quit()
 
 
 @pytest.fixture
@@ -229,7 +225,7 @@ def other_window(display: str) -> Iterator[str]:
     with subprocess.Popen(command, env=environment, stdin=PIPE, stdout=PIPE, text=True) as program:
         assert program.stdout is not None
         yield program.stdout.readline().strip()
-        program.communicate(timeout=20.0)
+        program.communicate(timeout=PATIENCE_S)
 
 
 def test_keys_held_while_another_window_takes_the_keyboard_stay_held(

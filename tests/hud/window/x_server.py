@@ -25,7 +25,7 @@ def x_server(size: tuple[int, int] = SIZE) -> Iterator[str]:
         yield f":{number}"
     finally:
         server.terminate()
-        server.wait(20.0)
+        server.wait(PATIENCE_S)
 
 
 def hands(display: str, *words: str, sure: bool = True) -> str:

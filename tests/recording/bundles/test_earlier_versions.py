@@ -17,7 +17,7 @@ from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.replay_bundle import replay_bundle
 from simconsole.recording.bundles.verification import verify
 from simconsole.recording.compare import compare
-from simconsole.values.host import jit as compiling
+from simconsole.values.host import jit
 from simconsole.vehicle.car import tyre
 from tests.paths import ROOT
 
@@ -76,7 +76,7 @@ def test_a_changed_constant_of_the_tyre_is_told_by_its_fields(
     """The same inputs under another law: what differs, since when and how far, to the end of the drive."""
     folder = Path(shutil.copytree(named("light_van"), tmp_path / "van"))
     as_today = {found.field: found.largest for found in replay_bundle(folder).differences}
-    monkeypatch.setattr(replaying, "compiled", compiling.plain)
+    monkeypatch.setattr(replaying, "compiled", jit.plain)
     monkeypatch.setattr(tyre, "PEAK_DEMAND", 1.01 * tyre.PEAK_DEMAND)
     assert main(["replay", str(folder), "--json"]) == 1
     text, _, last = capsys.readouterr().out.rstrip().rpartition("\n")

@@ -75,9 +75,9 @@ def test_a_packed_drive_and_its_log_replay_alike(copy: Path) -> None:
 
 def test_the_plain_functions_replay_what_compiled_code_drove(short: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from simconsole.recording.bundles import replay_bundle as replaying
-    from simconsole.values.host import jit as compiling
+    from simconsole.values.host import jit
 
-    monkeypatch.setattr(replaying, "compiled", compiling.plain)
+    monkeypatch.setattr(replaying, "compiled", jit.plain)
     found = replay_bundle(short)
     assert found.hashes_equal, found.differences
     assert found.ticks == 750

@@ -58,7 +58,7 @@ def test_a_person_is_advised_by_topics_and_the_log_keeps_it(tmp_path: Path) -> N
     assert all(before != after for (_, before), (_, after) in pairwise(told))
     limit_mps = bundle.log.table().column("situation.speed_limit_mps").max()
     assert all(5.0 <= one.low_mps <= one.target_mps <= limit_mps for _, one in told if one.kind is Advised.SPEED)
-    assert result.summary["station_restarts"] == {"bridge": 0, "advice": 0}
+    assert result.summary["worker_restarts"] == {"bridge": 0, "advice": 0}
     assert replay_bundle(result.folder).hashes_equal
 
 

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from simconsole.values.host import jit as compiling
+from simconsole.values.host import jit
 from simconsole.values.host.jit import compiled, digest, plain
 from simconsole.values.kernels import Row, holding, kernel, stage
 from simconsole.values.layout import Part, read
@@ -116,7 +116,7 @@ def quartered(value: float) -> float:
 @pytest.fixture(autouse=True)
 def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    for cached in (compiling.digest, compiling._entry, compiling._inner, compiling._prune):
+    for cached in (jit.digest, jit._entry, jit._inner, jit._prune):
         cached.cache_clear()
     return tmp_path / "simconsole" / "numba"
 

@@ -5,25 +5,18 @@ import math
 import numpy as np
 import pytest
 
-from simconsole.profiles.files.world_files import load_world
-from simconsole.profiles.world import ArenaProfile
 from simconsole.values.host.jit import compiled, plain
 from simconsole.world.arena.lidar import NOTHING_M, Beam, End, between, sweep
 from simconsole.world.arena.outlines import Array, outlines_of
 from simconsole.world.arena.raycast import NO_HIT_M, RayGrid, ray_grid
 from tests.bits import difference
+from tests.world.arena.shipped_arena import arena
 from tests.world.arena.test_raycast import oracle
 
 BEAM = Beam(x_m=-0.032, min_m=0.12, max_m=3.5, turn_s=0.2)
 STILL = End(2.0, 1.0, 0.3, 0.0, 0.0, 0.0)
 NOBODY = np.empty((0, 3))
 RAYS = 360
-
-
-def arena() -> ArenaProfile:
-    profile = load_world("arena")
-    assert isinstance(profile, ArenaProfile)
-    return profile
 
 
 def swept(grid: RayGrid, begin: End, end: End, others: Array = NOBODY, noise: Array | None = None) -> Array:

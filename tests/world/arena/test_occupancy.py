@@ -1,24 +1,17 @@
 import numpy as np
 import pytest
 
-from simconsole.profiles.files.world_files import load_world
-from simconsole.profiles.world import ArenaProfile
 from simconsole.values.errors import ProfileError
 from simconsole.world.arena.occupancy import FREE, OCCUPIED, UNKNOWN, Grid, arena_of_grid, grid_of
 from simconsole.world.arena.outlines import outlines_of
 from simconsole.world.arena.raycast import cast, ray_grid
+from tests.world.arena.shipped_arena import arena
 
 CELL_M = 0.05
 
 
-def shipped() -> ArenaProfile:
-    profile = load_world("arena")
-    assert isinstance(profile, ArenaProfile)
-    return profile
-
-
 def test_free_is_what_robots_reach_and_walls_leave_no_gap() -> None:
-    grid = grid_of(shipped(), CELL_M)
+    grid = grid_of(arena(), CELL_M)
     assert set(np.unique(grid.cells).tolist()) == {UNKNOWN, FREE, OCCUPIED}
     assert grid.cells[0, 0] == UNKNOWN, "outside"
 
@@ -33,7 +26,7 @@ def test_free_is_what_robots_reach_and_walls_leave_no_gap() -> None:
 
 
 def test_ranges_in_an_arena_that_was_a_grid_are_those_of_the_first_within_two_cells() -> None:
-    first = shipped()
+    first = arena()
     second = arena_of_grid(grid_of(first, CELL_M), "again")
     before, after, nobody = ray_grid(outlines_of(first)), ray_grid(outlines_of(second)), np.empty((0, 3))
     rng, apart = np.random.default_rng(1), []
@@ -74,4 +67,4 @@ def test_a_grid_of_one_kind_is_no_arena(state: int) -> None:
 
 def test_a_grid_of_too_many_cells_is_refused() -> None:
     with pytest.raises(ProfileError, match="cells"):
-        grid_of(shipped(), 0.001)
+        grid_of(arena(), 0.001)

@@ -5,18 +5,12 @@ import numpy as np
 import pytest
 
 from simconsole.profiles.files.world_files import load_world
-from simconsole.profiles.world import ArenaProfile
 from simconsole.values.errors import ProfileError
 from simconsole.world.tools.ros_maps import arena_text, read_ros_map, write_ros_map
+from tests.world.arena.shipped_arena import arena
 
 SHADES = np.array([[205, 205, 205, 205], [0, 254, 254, 0], [0, 254, 254, 0], [0, 0, 0, 0]], dtype=np.uint8)
 """As a picture is stored: the first row is the upper one, the last in y."""
-
-
-def shipped() -> ArenaProfile:
-    profile = load_world("arena")
-    assert isinstance(profile, ArenaProfile)
-    return profile
 
 
 def written(folder: Path, image: str = "m.pgm", **keys: object) -> Path:
@@ -32,7 +26,7 @@ def written(folder: Path, image: str = "m.pgm", **keys: object) -> Path:
 
 
 def test_an_arena_saved_as_a_ros_map_is_read_back(tmp_path: Path) -> None:
-    described, image = write_ros_map(shipped(), tmp_path, "arena", 0.05)
+    described, image = write_ros_map(arena(), tmp_path, "arena", 0.05)
     assert image.read_bytes().startswith(b"P5\n")
     again = read_ros_map(described, "Again")
     assert again.title == "Again"
@@ -42,7 +36,7 @@ def test_an_arena_saved_as_a_ros_map_is_read_back(tmp_path: Path) -> None:
     (tmp_path / "again.yaml").write_text(arena_text(again, "map.yaml"))
     assert load_world(str(tmp_path / "again.yaml")) == again
     with pytest.raises(ProfileError, match="taken"):
-        write_ros_map(shipped(), tmp_path, "arena", 0.05)
+        write_ros_map(arena(), tmp_path, "arena", 0.05)
 
 
 @pytest.mark.parametrize("image", ["m.pgm", "m.png"])

@@ -8,7 +8,7 @@ from simconsole.bridge.client.bridge_client import BridgeClient
 from simconsole.drivers.robots.fleet.team import Team
 from simconsole.drivers.robots.nodes.navigation_node import NavigationNode
 from simconsole.drivers.robots.nodes.shared_client import NodePort, SharedClient
-from simconsole.drivers.robots.nodes.slam_node import WAIT_S, Moment, SlamNode
+from simconsole.drivers.robots.nodes.slam_node import WAIT_S, SlamNode, StampedPose
 from simconsole.drivers.robots.slam.mapper import SharedMap
 from simconsole.values.errors import BridgeError
 from simconsole.values.host.jit import compiled
@@ -27,7 +27,7 @@ class FleetDriven(NamedTuple):
     """What the program has made of a drive."""
 
     grid: Grid | None  # None: there was no scan
-    moments: list[list[Moment]]  # where SLAM had each robot
+    moments: list[list[StampedPose]]  # where SLAM had each robot
     commands: int
     ended: str  # why
 

@@ -49,7 +49,7 @@ _WAITING: Final = 5  # scans for which odometry has not come
 _SLACK_NS: Final = 1_000_000  # by which odometry may end before a scan does
 
 
-class Moment(NamedTuple):
+class StampedPose(NamedTuple):
     """Where SLAM had the robot at the end of a scan."""
 
     time_ns: int
@@ -73,7 +73,7 @@ class SlamNode:
             start: the robot's pose in map when its first scan ends.
             namespace: of its topics and frames, `/tb3_0`; tf's topics and the frame of the map have none.
         """
-        self.moments: list[Moment] = []
+        self.moments: list[StampedPose] = []
         self._client = client
         self._shared = shared
         self._localiser = Localiser(shared, start)
@@ -111,7 +111,7 @@ class SlamNode:
             return
         time_ns = end_ns_of(scan)
         fix = self._localiser.add(rays_of(turn_of(scan), mount, self._track))
-        self.moments.append(Moment(time_ns, fix.pose, fix.share))
+        self.moments.append(StampedPose(time_ns, fix.pose, fix.share))
         grid = None
         if self._mapped_ns is None or time_ns >= self._mapped_ns + MAP_NS:
             grid = self._shared.grid
@@ -142,7 +142,7 @@ class SlamNode:
 class Mapped(NamedTuple):
     """What SLAM has made of a drive."""
 
-    moments: list[Moment]
+    moments: list[StampedPose]
     grid: Grid | None  # None: there was no scan
     ended: str  # why
 

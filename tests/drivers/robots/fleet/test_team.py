@@ -12,7 +12,8 @@ from simconsole.drivers.robots.navigation.navigator import Navigator, Progress
 from simconsole.values.host.jit import compiled
 from simconsole.values.platform import Pose
 from simconsole.world.arena.occupancy import OCCUPIED, UNKNOWN, grid_of
-from tests.drivers.robots.arena_robot import arena, burger
+from tests.drivers.robots.arena_robot import burger
+from tests.world.arena.shipped_arena import arena
 
 TARGETS = [Target(spot.name, spot.x_m, spot.y_m, math.radians(spot.yaw_deg)) for spot in arena().targets]
 STARTS = [Pose(spot.x_m, spot.y_m, 0.0) for spot in arena().starts]

@@ -15,8 +15,9 @@ from simconsole.evaluation.metrics.map_errors import map_errors
 from simconsole.values.host.jit import compiled
 from simconsole.values.platform import Pose
 from simconsole.world.arena.occupancy import grid_of
-from tests.drivers.robots.arena_robot import STEP_S, STOPPED, ArenaRobot, arena, burger
+from tests.drivers.robots.arena_robot import STEP_S, STOPPED, ArenaRobot, burger
 from tests.samples import Sample
+from tests.world.arena.shipped_arena import arena
 
 START = Pose(0.8, 0.8, 0.0)
 TARGETS = [Target(spot.name, spot.x_m, spot.y_m, math.radians(spot.yaw_deg)) for spot in arena().targets]

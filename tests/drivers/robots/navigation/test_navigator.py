@@ -10,9 +10,10 @@ from simconsole.values.host.jit import compiled
 from simconsole.values.platform import Pose
 from simconsole.world.arena.occupancy import grid_of
 from simconsole.world.arena.outlines import Outlines
-from tests.drivers.robots.arena_robot import MOUNT, RAYS, STEP_S, STOPPED, ArenaRobot, arena, burger
+from tests.drivers.robots.arena_robot import MOUNT, RAYS, STEP_S, STOPPED, ArenaRobot, burger
 from tests.drivers.robots.navigation.rooms import two_rooms
 from tests.samples import Sample
+from tests.world.arena.shipped_arena import arena
 
 NOTHING = np.empty((0, 2))
 

@@ -14,8 +14,9 @@ from simconsole.evaluation.metrics.map_errors import map_errors
 from simconsole.evaluation.metrics.trajectory_errors import trajectory_errors
 from simconsole.values.host.jit import compiled
 from simconsole.values.platform import Pose
-from tests.drivers.robots.arena_robot import MOUNT, STOPPED, ArenaRobot, arena, round_of, speeds_along
+from tests.drivers.robots.arena_robot import MOUNT, STOPPED, ArenaRobot, round_of, speeds_along
 from tests.samples import Sample
+from tests.world.arena.shipped_arena import arena
 
 START = Pose(0.8, 0.8, 0.0)
 

@@ -1,4 +1,4 @@
-"""A process that drives one task after the other: `python -m simconsole.evaluation.sweep.lane`.
+"""A process that drives one task after the other: `python -m simconsole.evaluation.sweep.worker_pool`.
 
 What takes it down, an error in compiled code, the kernel for want of memory, a drive that never ends, loses the drive
 that it was at and nothing else. Tasks and results are lines of JSON on its standard input and output; it ends with
@@ -16,11 +16,11 @@ import msgspec
 from simconsole.evaluation.sweep.task import Outcome, Task, TaskResult, drive_task, from_bytes, to_bytes
 from simconsole.processes.lifetimes import SIGNALS, close_pipe, end_at_once, handle, spawn
 
-_MODULE: Final = "simconsole.evaluation.sweep.lane"
+_MODULE: Final = "simconsole.evaluation.sweep.worker_pool"
 _ENDS_S: Final = 10.0
 
 
-class Lane:
+class PoolWorker:
     """One such process, started when it is needed. For one thread at a time; `close` may come from another."""
 
     def __init__(self) -> None:
@@ -64,51 +64,51 @@ class Lane:
                 self._process.stdout.close()
 
 
-class Lanes:
-    """A lane for each thread that asks; a drive that takes one down is tried once more in another."""
+class WorkerPool:
+    """A process for each thread that asks; a drive that takes one down is tried once more in another."""
 
     def __init__(self) -> None:
         self._of_thread = threading.local()
-        self._all: set[Lane] = set()
+        self._all: set[PoolWorker] = set()
         self._lock = threading.Lock()
         self._closed = False
 
     def drive(self, task: Task) -> TaskResult:
-        """Drive a task in this thread's lane."""
+        """Drive a task in this thread's process."""
         outcome: Outcome = "crashed"
         for _ in range(2):
-            lane = self._lane()
-            found = lane.drive(task)
+            worker = self._worker()
+            found = worker.drive(task)
             if found is not None:
                 return found
-            outcome = "timed out" if lane.gave_up else "crashed"
-            self._drop(lane)
+            outcome = "timed out" if worker.gave_up else "crashed"
+            self._drop(worker)
         detail = f"twice, after {task.timeout_s:g} s" if outcome == "timed out" else "twice: the process has ended"
         return TaskResult(index=task.index, outcome=outcome, detail=detail)
 
     def close(self) -> None:
-        """End all lanes. Threads that wait for one get no result."""
+        """End all of them. Threads that wait for one get no result."""
         with self._lock:
-            self._closed, lanes = True, tuple(self._all)
-        for lane in lanes:
-            lane.close()
+            self._closed, workers = True, tuple(self._all)
+        for worker in workers:
+            worker.close()
 
-    def _lane(self) -> Lane:
-        lane: Lane | None = getattr(self._of_thread, "lane", None)
-        if lane is None:
+    def _worker(self) -> PoolWorker:
+        worker: PoolWorker | None = getattr(self._of_thread, "worker", None)
+        if worker is None:
             with self._lock:
                 if self._closed:
                     raise InterruptedError("the sweep has ended")
-                lane = Lane()
-                self._all.add(lane)
-            self._of_thread.lane = lane
-        return lane
+                worker = PoolWorker()
+                self._all.add(worker)
+            self._of_thread.worker = worker
+        return worker
 
-    def _drop(self, lane: Lane) -> None:
-        lane.close()
-        self._of_thread.lane = None
+    def _drop(self, worker: PoolWorker) -> None:
+        worker.close()
+        self._of_thread.worker = None
         with self._lock:
-            self._all.discard(lane)
+            self._all.discard(worker)
 
 
 def main() -> NoReturn:

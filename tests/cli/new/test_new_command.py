@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from simconsole.cli.new.command import KINDS
+from simconsole.cli.new.new_command import KINDS
 from tests.drives.console import complaint, results, simconsole
 from tests.paths import ROOT
 

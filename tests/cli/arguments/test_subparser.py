@@ -2,7 +2,7 @@ import argparse
 
 import pytest
 
-from simconsole.cli.arguments.command import command, number
+from simconsole.cli.arguments.subparser import command, number
 
 
 def test_a_number_out_of_its_bounds_is_refused_with_them_and_the_unit() -> None:

@@ -42,7 +42,7 @@ _DRIVING: Final = frozenset(map(mode_label, (Mode.AUTONOMOUS, Mode.SHARED, Mode.
 _PATIENCE_S: Final = 10.0  # for the console to open its port
 _WAIT_S: Final = 0.25  # how often `stop` is checked while no message comes
 
-_logger = logging.getLogger("simconsole.drivers.autopilot.program")
+_logger = logging.getLogger("simconsole.drivers.autopilot.rosbridge_autopilot")
 
 
 class Topics(NamedTuple):

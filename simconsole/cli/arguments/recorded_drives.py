@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from simconsole.cli.arguments.command import command
+from simconsole.cli.arguments.subparser import command
 
 
 def recordings(commands: Any) -> None:

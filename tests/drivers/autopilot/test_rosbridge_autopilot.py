@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from websockets.sync.server import ServerConnection, serve
 
-from simconsole.drivers.autopilot.program import run
+from simconsole.drivers.autopilot.rosbridge_autopilot import run
 from simconsole.values.errors import BridgeError, ProfileError
 from simconsole.values.labels import mode_label
 from simconsole.values.signals import Mode

@@ -3,9 +3,9 @@ from typing import Any
 import pytest
 
 from simconsole.hud.banner import ALERT_LABELS, Alert
+from simconsole.hud.captions import LONGEST_BUTTON, MENDING, STEER_OR_BRAKE, next_step, other_side
 from simconsole.hud.layout import layout
 from simconsole.hud.view import HudMemory, HudSettings, HudView, view
-from simconsole.hud.words import LONGEST_BUTTON, MENDING, STEER_OR_BRAKE, next_step, other_side
 from simconsole.profiles.view import ENGLISH
 from simconsole.values.labels import reason_label
 from simconsole.values.signals import NEVER_TICKS, Commander, Mode, Reason, Validity
