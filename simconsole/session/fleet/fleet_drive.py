@@ -158,9 +158,12 @@ def _run(
         for number, member in enumerate(fleet)
     ]
 
+    has_robots = any(member.console.others for member in fleet)
+
     def meet(states: Sequence[ConsoleState]) -> None:
         """Tell each where the others are, all of the same moment."""
-        whereabouts.renew(states)
+        if has_robots:
+            whereabouts.renew(states)
         company.renew(states)
         for member, state in zip(fleet, states, strict=True):
             if member.sight is not None:
