@@ -7,13 +7,18 @@ which is not counted: only the console is. With --free nobody commands, and a sc
 one alone 64 ticks are then made at once, of several those of a period, for they have to be told of each other.
 
 Each pair is one car by the way of one (`lifecycle.drive`) and many by that of many (`fleet_drive.drive_fleet`), in
-turns first. The interval is that of the median's order statistics (benchmarks/two_trees.py).
+turns first, each in a new process. Printed are the drives alone, and the whole processes with their start. The interval
+is that of the median's order statistics (benchmarks/two_trees.py).
 """
 
 import argparse
+import json
 import os
 import statistics
+import subprocess
+import sys
 import tempfile
+import time
 from pathlib import Path
 
 from two_trees import interval
@@ -45,21 +50,36 @@ def main() -> None:
     words.add_argument("--cars", type=int, default=10)
     words.add_argument("--seconds", type=float, default=30.0, help="simulated seconds a drive")
     words.add_argument("--free", action="store_true", help="without controllers")
+    words.add_argument("--drive", action="store_true", help="drive once with --cars and print both processor times")
     given = words.parse_args()
+    if given.drive:
+        drive_s = cpu_s(given.cars, given.seconds, given.free)
+        print(json.dumps([drive_s, time.process_time()]))
+        return
     for cars in (1, given.cars):  # compiles
-        cpu_s(cars, 3.0, given.free)
-    ones: list[float] = []
-    manys: list[float] = []
+        in_new_process(cars, 3.0, given.free)
+    ones: list[list[float]] = []
+    manys: list[list[float]] = []
     for pair in range(given.pairs):
         order = (ones, 1), (manys, given.cars)
         for times, cars in order if pair % 2 else reversed(order):
-            times.append(cpu_s(cars, given.seconds, given.free))
-    ratios = sorted(many / one for many, one in zip(manys, ones, strict=True))
-    low, high = interval(len(ratios))
+            times.append(in_new_process(cars, given.seconds, given.free))
     how = "without controllers" if given.free else "in lockstep with autopilots"
     print(f"{given.seconds:g} s on {WORLD}, {how}, the console's processor time, medians of {given.pairs} pairs:")
-    print(f"  1 car {statistics.median(ones):.2f} s, {given.cars} cars {statistics.median(manys):.2f} s")
-    print(f"  ratio {statistics.median(ratios):.2f} (95 % interval {ratios[low]:.2f} to {ratios[high]:.2f})")
+    for place, what in enumerate(("drive", "whole process")):
+        one, many = ([times[place] for times in all_times] for all_times in (ones, manys))
+        ratios = sorted(of_many / of_one for of_many, of_one in zip(many, one, strict=True))
+        low, high = interval(len(ratios))
+        print(f"  {what}: 1 car {statistics.median(one):.2f} s, {given.cars} cars {statistics.median(many):.2f} s")
+        print(f"    ratio {statistics.median(ratios):.2f} (95 % interval {ratios[low]:.2f} to {ratios[high]:.2f})")
+
+
+def in_new_process(cars: int, seconds: float, free: bool) -> list[float]:
+    """Return the processor time (s) of a drive of so many cars, and that of the process that has driven it."""
+    words = [sys.executable, __file__, "--drive", "--cars", str(cars), "--seconds", str(seconds)]
+    done = subprocess.run([*words, *(["--free"] if free else [])], stdout=subprocess.PIPE, check=True)
+    drive_s, process_s = json.loads(done.stdout)
+    return [float(drive_s), float(process_s)]
 
 
 def cpu_s(cars: int, seconds: float, free: bool) -> float:
