@@ -102,7 +102,7 @@ def test_a_collision_pushes_both_at_one_moment_by_what_it_takes_from_the_other(d
         east, north = along * np.cos(yaw) - aside * np.sin(yaw), along * np.sin(yaw) + aside * np.cos(yaw)
         momentum.append((solid.mass_kg * east, solid.mass_kg * north))
     assert momentum[0][0] < -1000.0, "N s"
-    assert np.add(*momentum) == pytest.approx((0.0, 0.0), abs=1e-6)
+    assert np.sum(momentum, axis=0) == pytest.approx((0.0, 0.0), abs=1e-6)
     assert driven.column("parked", "vehicle.vx_mps")[at + PERIOD_TICKS] > 0.3
 
 
