@@ -51,6 +51,10 @@ class Environment(Section, frozen=True, kw_only=True):
     """Other vehicles, where the world is a road map."""
 
 
+DriverName = Annotated[str, Meta(pattern=r"^(none|sdl|keyboard|virtual|(trace|script):.+)$")]
+"""Who sits in a seat."""
+
+
 class PlatformSection(Section, frozen=True, kw_only=True):
     """One of several platforms of a session."""
 
@@ -59,7 +63,14 @@ class PlatformSection(Section, frozen=True, kw_only=True):
     vehicle: ProfileName | None = None
     """Without it that of the scenario."""
     start: Start | None = None
-    """Without it the arena's start of its name, or of its number."""
+    """Without it the arena's start of its name, or of its number; on another world the beginning of the route, and 15 m
+    further along it for each platform before this one."""
+    driver: DriverName | None = None
+    """Who sits in it. Without it `devices.driver` in the one of `scenario.seat`, nobody in the others."""
+    person: PersonPlan | None = None
+    """What its simulated person does; without it `devices.person`."""
+    autopilot: bool = True
+    """Whether `features.autopilot`, where there is one, starts a program for it, too."""
 
 
 class Scenario(Section, frozen=True, kw_only=True):
@@ -71,11 +82,12 @@ class Scenario(Section, frozen=True, kw_only=True):
     duration_s: Annotated[float, Meta(gt=0.0, le=86_400.0)] | None = None
     faults: Faults = ()
     platforms: Annotated[tuple[PlatformSection, ...], Meta(max_length=16)] = ()
-    """Robots that drive together, where the world is an arena and `mode.pacing` lockstep; none: one, the scenario's.
-    Reports and views show the first one."""
+    """Those that drive together, without a clock; none: one, the scenario's vehicle."""
+    seat: str | None = None
+    """The platform that `devices.driver`, `faults`, display and report belong to; without it the first."""
 
     def __post_init__(self) -> None:
-        """Refuse platforms of one name.
+        """Refuse platforms of one name, and a seat in none of them.
 
         Raises:
             ValueError: names key and value.
@@ -83,6 +95,10 @@ class Scenario(Section, frozen=True, kw_only=True):
         names = [platform.name for platform in self.platforms]
         if len(set(names)) < len(names):
             raise ValueError(f"platforms: name: a name twice in {', '.join(names)}: each one once")
+        if self.seat is not None and self.seat not in names:
+            raise ValueError(
+                f"seat: value {self.seat}: the name of a platform, of {', '.join(names) or 'which there are none'}"
+            )
 
 
 class Aids(Section, frozen=True, kw_only=True):
@@ -127,7 +143,7 @@ class Devices(Section, frozen=True, kw_only=True):
     """The cockpit."""
 
     cockpit: ProfileName = "t500rs_th8rs"
-    driver: Annotated[str, Meta(pattern=r"^(none|sdl|keyboard|virtual|(trace|script):.+)$")] = "sdl"
+    driver: DriverName = "sdl"
     person: PersonPlan | None = None
     """What the simulated person does where `driver` is virtual; without it they drive the world's route by hand."""
 

@@ -37,6 +37,7 @@ LOOK_S = 0.2
 """How often a wait for another process checks whether it was cancelled."""
 
 if TYPE_CHECKING:
+    from simconsole.bridge.console.surroundings import Surroundings
     from simconsole.bridge.transport.lockstep_server import LockstepBridge
     from simconsole.canbus.bus.worker import HeadlessCan
     from simconsole.recording.imports.bag_commands import BagCommands
@@ -138,10 +139,7 @@ def _open_lockstep(
     stack: ExitStack,
     traffic: TrafficSource | None,
 ) -> LockstepLink:
-    from simconsole.bridge.console.surroundings import Surroundings
-    from simconsole.bridge.console.view_topics import NO_VIEW
     from simconsole.bridge.transport.lockstep_server import LockstepBridge
-    from simconsole.session.robots import robot_at_work
     from simconsole.session.view.external_view import display_settings, external_view
     from simconsole.session.view.view_job import view_job
 
@@ -149,23 +147,15 @@ def _open_lockstep(
     if session.outputs.bridge is None:
         raise ProfileError("outputs.bridge: value missing: a bridge, where mode.pacing is lockstep")
     token, drive = own_token(session), new_nonce()
-    view = NO_VIEW
+    around = surroundings(resolved, console, traffic)
     if session.outputs.bridge.external_view:
-        view = external_view(view_job(resolved), display_settings(resolved))
+        around = around._replace(view=external_view(view_job(resolved), display_settings(resolved)))
     bridge = LockstepBridge(
         session.outputs.bridge,
         odometry_hz=session.mode.control_hz,
         folder=folder,
         drive=drive,
-        around=Surroundings(
-            route=route_points(resolved.world),
-            shown_map=shown_map(resolved.world),
-            signals=(None if traffic is None else traffic.signals()) or road_signals(resolved.world, console.tick_hz),
-            road_users=None if traffic is None else traffic.newest,
-            view=view,
-            robot=robot_at_work(resolved.vehicle, resolved.world),
-            steering=steering_limit(session.features.control, console.platform.wheelbase_m),
-        ),
+        around=around,
     )
     program = None
     if session.features.autopilot is not None:
@@ -176,6 +166,21 @@ def _open_lockstep(
         stack.callback(tell_to_end, [program])
     _wait_for_controller(bridge, program, session.mode.wait_for_controller_s, interrupt.check)
     return lockstep_link(bridge, session, interrupt)
+
+
+def surroundings(resolved: ResolvedSession, console: Console, traffic: TrafficSource | None) -> "Surroundings":
+    """Return what a bridge in lockstep tells of beside the state vector; the view's topics are not among it."""
+    from simconsole.bridge.console.surroundings import Surroundings
+    from simconsole.session.robots import robot_at_work
+
+    return Surroundings(
+        route=route_points(resolved.world),
+        shown_map=shown_map(resolved.world),
+        signals=(None if traffic is None else traffic.signals()) or road_signals(resolved.world, console.tick_hz),
+        road_users=None if traffic is None else traffic.newest,
+        robot=robot_at_work(resolved.vehicle, resolved.world),
+        steering=steering_limit(resolved.session.features.control, console.platform.wheelbase_m),
+    )
 
 
 def lockstep_link(server: LockstepServer, session: SessionProfile, interrupt: Interrupt) -> LockstepLink:

@@ -183,11 +183,20 @@ def list_what_workers_wrote(folder: Path, manifest: Manifest) -> None:
 
 
 def bundle_of(
-    resolved: ResolvedSession, console: Console, folder: Path, given: Given, signals: OwnSignals | None = None
+    resolved: ResolvedSession,
+    console: Console,
+    folder: Path,
+    given: Given,
+    signals: OwnSignals | None = None,
+    among_platforms: bool = False,
 ) -> BundleWriter:
-    """Begin the bundle of a drive, as `new_bundle`, with the streams that its session has."""
+    """Begin the bundle of a drive, as `new_bundle`, with the streams that its session has.
+
+    With `among_platforms` it has road users, too: the session's other platforms.
+    """
     traffic = resolved.session.environment.traffic
-    road_users = () if traffic is None else (message_stream(ROAD_USERS, ROAD_USERS_ENCODING),)
+    seen = traffic is not None or among_platforms
+    road_users = (message_stream(ROAD_USERS, ROAD_USERS_ENCODING),) if seen else ()
     if traffic is not None and traffic.sumo is not None:
         road_users = (*road_users, message_stream(SIGNALS, "json"))
     plans = (message_stream(PLANS, PLANS_ENCODING),) if keeps_plans(resolved.session) else ()

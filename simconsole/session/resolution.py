@@ -13,7 +13,7 @@ from simconsole.profiles.files.loader import find, load
 from simconsole.profiles.files.vehicle_files import load_vehicle
 from simconsole.profiles.files.world_files import load_world
 from simconsole.profiles.scenario import ScenarioProfile
-from simconsole.profiles.session import SessionProfile, Start
+from simconsole.profiles.session import PlatformSection, SessionProfile, Start
 from simconsole.profiles.validation import PROFILE_FILES, convert
 from simconsole.profiles.view import HudProfile, LanguageProfile
 from simconsole.profiles.world import ArenaProfile, WorldProfile
@@ -233,15 +233,20 @@ def _profiles_beside(session: SessionProfile, path: Path) -> SessionProfile:
         if name is not None and name.endswith(PROFILE_FILES):
             changed: dict[str, object] = {key: str(_beside(path, f"{section}.{key}", name, name))}
             session = override(session, **{section: changed})
-    platforms = tuple(
-        platform
-        if platform.vehicle is None or not platform.vehicle.endswith(PROFILE_FILES)
-        else msgspec.structs.replace(
-            platform, vehicle=str(_beside(path, "platforms.vehicle", platform.vehicle, platform.vehicle))
-        )
-        for platform in session.scenario.platforms
-    )
+    platforms = tuple(_platform_beside(platform, path) for platform in session.scenario.platforms)
     return msgspec.structs.replace(session, scenario=msgspec.structs.replace(session.scenario, platforms=platforms))
+
+
+def _platform_beside(platform: PlatformSection, path: Path) -> PlatformSection:
+    """Return one of several platforms with the whole paths of its own vehicle and of its script or trace."""
+    vehicle, (kind, _, name) = platform.vehicle, (platform.driver or "").partition(":")
+    if vehicle is not None and vehicle.endswith(PROFILE_FILES):
+        beside = _beside(path, "platforms.vehicle", vehicle, vehicle)
+        platform = msgspec.structs.replace(platform, vehicle=str(beside))
+    if name:
+        beside = _beside(path, "platforms.driver", platform.driver or "", name)
+        platform = msgspec.structs.replace(platform, driver=f"{kind}:{beside}")
+    return platform
 
 
 def _beside(path: Path, key: str, value: str, name: str) -> Path:

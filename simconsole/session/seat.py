@@ -149,7 +149,7 @@ def _open_person(resolved: ResolvedSession, console: Console, stack: ExitStack) 
     plan, guidance = _plan(resolved, console.tick_hz)
     cockpit = VirtualCockpit(resolved.cockpit)
     stack.callback(cockpit.close)
-    devices = SdlSource(resolved.cockpit)
+    devices = SdlSource(resolved.cockpit, cockpit.has)  # another person may sit at devices that are alike
     stack.callback(devices.close)
     numbers, tick_hz = cockpit_settings(resolved.cockpit, console.tick_hz), console.tick_hz
     force = resolved.cockpit.force_feedback

@@ -27,8 +27,9 @@ from simconsole.world.rules.owing import Owing
 from simconsole.world.rules.road_rules import APPROACH, RoadRules
 from simconsole.world.rules.running_signals import RunningSignals
 from simconsole.world.traffic.crashes import NO_CRASH, Crashes
+from simconsole.world.traffic.impact import Moving
 from simconsole.world.traffic.leader import Leaders
-from simconsole.world.traffic.road_users import Box, RoadUsersAt, to_bytes
+from simconsole.world.traffic.road_users import Box, RoadUser, RoadUsersAt, to_bytes
 from simconsole.world.traffic.traffic import Traffic
 
 ShowRoadUsers = Callable[[RoadUsersAt], None]
@@ -102,13 +103,14 @@ class TrafficSource:
         route: Route | None = None,
         owing: Owing | None = None,
         signals: OtherSignals | None = None,
+        moves: Callable[[RoadUser], Moving] | None = None,
     ) -> None:
         """Take what the vehicle follows as `route`; without one it goes straight on, and `owing` tells nothing.
 
-        `signals` are those that the traffic brings with it; None: they run their own programs.
+        `signals` are those that the traffic brings with it; None: they run their own programs. `moves` as of `Crashes`.
         """
         self._traffic, self._signals = traffic, signals
-        self._leaders, self._crashes = Leaders(route, compiled), Crashes(platform.solid, compiled)
+        self._leaders, self._crashes = Leaders(route, compiled), Crashes(platform.solid, compiled, moves)
         self._platform = platform
         self._period_ticks = period_ticks
         self._owing = owing

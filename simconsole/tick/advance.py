@@ -5,6 +5,7 @@ this same function; only where inputs come from, how ticks are paced and who rea
 """
 
 from collections.abc import Callable
+from functools import lru_cache
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -116,7 +117,7 @@ def build_console(
     look, struck = (None, None) if roads is None else (look_around, strike)
     step = execution(platform.step) if platform.compiled else platform.step
     if platform.compiled:
-        block = execution(_block_of(in_order(decide, struck, platform.step, look, torque, None)))
+        block = _whole(execution, struck, platform.step, look, torque)
     else:
         stages = (None if one is None else execution(one) for one in (struck, look, torque))
         struck_at_work, look_at_work, torque_at_work = stages
@@ -139,6 +140,14 @@ def build_console(
         look_around=None if look is None else execution(look),
         block=holding(block, roads),
     )
+
+
+@lru_cache(maxsize=8)  # platforms of a session that are alike have one
+def _whole(
+    execution: Execution, strike: Stage | None, step: Step, look: Stage | None, feel: Stage | None
+) -> Callable[..., Any]:
+    """Return the kernel that makes one tick after the other, compiled as a whole."""
+    return execution(_block_of(in_order(decide, strike, step, look, feel, None)))
 
 
 def _initial(platform: Platform) -> Row:

@@ -15,9 +15,10 @@ from simconsole.values.trigonometry import cos, sin
 
 
 class Body(NamedTuple):
-    """What others see of a platform: a circle."""
+    """What robots are told of a platform: of the circles between two middles on its axis the one next to them."""
 
-    ahead_m: float  # its middle, of base_link
+    rear_m: float  # middle of the hindmost circle, ahead of base_link
+    front_m: float  # of the foremost; a round body has one
     radius_m: float
 
 
@@ -27,33 +28,48 @@ class Whereabouts:
     def __init__(self, bodies: Sequence[Body], states: Sequence[ConsoleState]) -> None:
         """Start with the states before the first tick, in the order of the bodies."""
         self._bodies = bodies
-        self._circles: list[tuple[float, ...]] = []
+        self._places: list[_Place] = []
         self.renew(states)
 
     def renew(self, states: Sequence[ConsoleState]) -> None:
         """Tell from now on where the platforms are in these states."""
-        self._circles = [_circle(state.vector, body) for state, body in zip(states, self._bodies, strict=True)]
+        self._places = [_place(state.vector) for state in states]
 
     def seen_by(self, number: int) -> Callable[[], tuple[float, ...]]:
         """Return what tells the platform of this number of all others, in their order."""
 
         def others() -> tuple[float, ...]:
-            circles = (circle for at, circle in enumerate(self._circles) if at != number)
+            own = self._places[number]
+            all_there = enumerate(zip(self._places, self._bodies, strict=True))
+            circles = (_circle(place, body, own) for at, (place, body) in all_there if at != number)
             return tuple(value for circle in circles for value in circle)
 
         return others
 
 
-def _circle(vector: Row, body: Body) -> tuple[float, ...]:
+class _Place(NamedTuple):
+    x_m: float
+    y_m: float
+    cosine: float
+    sine: float
+
+
+def _place(vector: Row) -> _Place:
     vehicle = read(vector, LAYOUT.vehicle)
-    x_m = vehicle.x_m + body.ahead_m * cos(vehicle.yaw_rad)
-    return x_m, vehicle.y_m + body.ahead_m * sin(vehicle.yaw_rad), body.radius_m
+    return _Place(vehicle.x_m, vehicle.y_m, cos(vehicle.yaw_rad), sin(vehicle.yaw_rad))
+
+
+def _circle(place: _Place, body: Body, seen_from: _Place) -> tuple[float, float, float]:
+    """Return the circle of a body that is next to who looks at it."""
+    away_m = (seen_from.x_m - place.x_m) * place.cosine + (seen_from.y_m - place.y_m) * place.sine
+    ahead_m = min(max(away_m, body.rear_m), body.front_m)
+    return place.x_m + ahead_m * place.cosine, place.y_m + ahead_m * place.sine, body.radius_m
 
 
 def run_together(
     drives: Sequence[Iterator[ConsoleState]],
     states: Sequence[ConsoleState],
-    whereabouts: Whereabouts,
+    meet: Callable[[Sequence[ConsoleState]], None],
     period_ticks: int,
     finished: Callable[[Sequence[ConsoleState]], bool] = lambda states: False,
 ) -> list[ConsoleState]:
@@ -62,7 +78,7 @@ def run_together(
     Args:
         drives: of each platform, its `loop.steps`.
         states: of each before the first tick, all at the same tick.
-        whereabouts: renewed after each period.
+        meet: told where all are after each period, before any goes on.
         period_ticks: how many ticks one of them makes before the next one does, as far as it foresees them.
         finished: asked after each period, so that all end at the same tick.
     """
@@ -80,5 +96,5 @@ def run_together(
                 now[number] = state
         if ended:
             break
-        whereabouts.renew(now)
+        meet(now)
     return now

@@ -39,9 +39,9 @@ def drive(track: Track, number: int, at_once: int, ticks: int, whereabouts: Wher
 
 def together(track: Track, at_once: tuple[int, int], ticks: tuple[int, int], most: int = 1000) -> list[int]:
     begin = [state(0, 0.0), state(0, 0.0)]
-    whereabouts = Whereabouts([Body(0.0, 0.1), Body(0.0, 0.2)], begin)
+    whereabouts = Whereabouts([Body(0.0, 0.0, 0.1), Body(0.0, 0.0, 0.2)], begin)
     drives = [drive(track, number, at_once[number], ticks[number], whereabouts) for number in (0, 1)]
-    states = run_together(drives, begin, whereabouts, 4, lambda now: now[0].tick >= most)
+    states = run_together(drives, begin, whereabouts.renew, 4, lambda now: now[0].tick >= most)
     return [one.tick for one in states]
 
 
@@ -73,5 +73,12 @@ def test_the_end_of_one_is_the_end_of_all() -> None:
 
 
 def test_the_middle_of_a_body_is_where_its_robot_looks_from_base_link() -> None:
-    whereabouts = Whereabouts([Body(0.5, 0.1), Body(0.0, 0.2)], [state(0, 2.0, math.pi / 2), state(0, 0.0)])
+    bodies = [Body(0.5, 0.5, 0.1), Body(0.0, 0.0, 0.2)]
+    whereabouts = Whereabouts(bodies, [state(0, 2.0, math.pi / 2), state(0, 0.0)])
     assert whereabouts.seen_by(1)() == pytest.approx((2.0, 1.5, 0.1))
+
+
+@pytest.mark.parametrize(("at_x_m", "told_x_m"), [(-9.0, 0.0), (1.2, 1.2), (9.0, 3.0)])
+def test_of_a_long_body_the_circle_next_to_who_is_told(at_x_m: float, told_x_m: float) -> None:
+    whereabouts = Whereabouts([Body(0.0, 3.0, 0.9), Body(0.0, 0.0, 0.2)], [state(0, 0.0), state(0, at_x_m)])
+    assert whereabouts.seen_by(1)() == pytest.approx((told_x_m, 1.0, 0.9))

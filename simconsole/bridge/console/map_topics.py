@@ -1,6 +1,7 @@
 """The messages about the map: its drawing as markers, and where on the earth the vehicle is."""
 
 from collections.abc import Iterable, Iterator, Sequence
+from functools import lru_cache
 from itertools import pairwise
 from typing import Any, Final, NamedTuple
 
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 from simconsole.bridge.console.published_tick import MAP_FRAME, ONCE, OutputTopic, PublishedTick
 from simconsole.bridge.messages import Registry
 from simconsole.profiles.link import LocalisationProfile
+from simconsole.world.drawing import Drawing
 from simconsole.world.triangles import triangulate
 from simconsole.world.world import ShownMap
 
@@ -88,12 +90,8 @@ class MapTopics:
         drawing = self._shown.drawing()
         if drawing is None:
             return self._marker_array([])
-        found, left = [], MOST_POINTS
-        for number, layer in enumerate(_LAYERS):
-            points = _points(getattr(drawing, layer.name), layer.area, left)
-            left -= len(points)
-            if points:
-                found.append(self._layer(tick, number, layer, points))
+        layers = zip(_LAYERS, _points_of(_Drawn(drawing)), strict=True)
+        found = [self._layer(tick, number, *layer) for number, layer in enumerate(layers) if layer[1]]
         return self._marker_array(found)
 
     def _layer(self, tick: PublishedTick, number: int, layer: _Layer, points: Sequence[tuple[float, float]]) -> Any:
@@ -107,6 +105,29 @@ class MapTopics:
             color=self._colour(*layer.colour),
             points=[self._point(x, y, layer.height_m) for x, y in points],
         )
+
+
+class _Drawn:
+    """A drawing as a key: itself, not what is in it."""
+
+    def __init__(self, drawing: Drawing) -> None:
+        self.drawing = drawing
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Drawn) and other.drawing is self.drawing
+
+    def __hash__(self) -> int:
+        return id(self.drawing)
+
+
+@lru_cache(maxsize=1)  # the platforms of a session have one world
+def _points_of(drawn: _Drawn) -> list[list[tuple[float, float]]]:
+    """Return the points of each of `_LAYERS`, in all at most MOST_POINTS."""
+    found: list[list[tuple[float, float]]] = []
+    for layer in _LAYERS:
+        left = MOST_POINTS - sum(map(len, found))
+        found.append(_points(getattr(drawn.drawing, layer.name), layer.area, left))
+    return found
 
 
 def _points(shapes: Iterable[Array], area: bool, most: int) -> list[tuple[float, float]]:

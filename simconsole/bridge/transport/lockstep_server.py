@@ -354,7 +354,8 @@ class LockstepBridge:
         for connection in list(self._connections):
             if checking:
                 connection.check()
-            self._send_waiting(connection)
+            if checking or connection.has_something:
+                self._send_waiting(connection)
 
     def _remove(self, connection: LockstepConnection) -> None:
         if self._connections.pop(connection, None) is None:

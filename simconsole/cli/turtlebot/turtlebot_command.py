@@ -53,7 +53,7 @@ def turtlebot(options: Namespace) -> Outcome:
     (folder / FIGURE).write_text(mission_svg(result, arena), "utf-8")
     outcome = finish(driven, packed=not options.no_pack)
     cpu_s = sum(os.times()[:4]) - began_s
-    digests = {resolved.session.scenario.platforms[0].name: driven.digest, **read_manifest(driven.folder).platforms}
+    digests = {next(iter(members(resolved))): driven.digest, **read_manifest(driven.folder).platforms}
     plain = {
         **result.plain(),
         "folder": str(folder),
@@ -145,11 +145,11 @@ def _arguments(resolved: ResolvedSession, url: str, folder: Path, objective: str
     arguments = ["-m", "simconsole.drivers.robots.nodes.program", "team", ATTACHED, "--url", url]
     arguments += ["--arena", session.environment.world or "", "--objective", objective]
     arguments += ["--out", str(folder), "--wait", f"{PATIENCE_S:g}"]
-    for platform, part in zip(session.scenario.platforms, members(resolved), strict=True):
+    for part in members(resolved).values():
         bridge, start = part.session.outputs.bridge, part.session.scenario.start
         assert bridge is not None
         assert start is not None
-        vehicle = platform.vehicle or session.scenario.vehicle
+        vehicle = part.session.scenario.vehicle
         place = f"{start.x_m:.6f},{start.y_m:.6f},{start.yaw_deg:.6f}"
         arguments += ["--robot", f"{bridge.namespace}={vehicle}@{place}"]
     return arguments

@@ -5,6 +5,7 @@ is taken as a whole, because SDL centres all axes *before* it tells that a devic
 that rest at 1.0 reads as half throttle and half brake.
 """
 
+from collections.abc import Callable
 from typing import Any, Final, NamedTuple
 
 from simconsole.devices.calibration.calibrator import travel
@@ -86,8 +87,8 @@ def connected_joysticks(pygame: Any) -> list[tuple[JoystickInfo, Any]]:
 class SdlSource:
     """The cockpit of a profile, read through SDL. Survives unplugging; comes back by identity."""
 
-    def __init__(self, cockpit: CockpitProfile) -> None:
-        """Open the cockpit.
+    def __init__(self, cockpit: CockpitProfile, mine: Callable[[int], bool] = lambda instance_id: True) -> None:
+        """Open the cockpit; `mine` tells which of SDL's joysticks are looked at, where several are alike.
 
         Raises:
             DeviceNotFound: a device that the profile binds is not plugged in.
@@ -96,7 +97,7 @@ class SdlSource:
         """
         if not cockpit.roles:
             raise DeviceError(f"{cockpit.title}: roles: value empty: a cockpit with devices")
-        self._cockpit = cockpit
+        self._cockpit, self._mine = cockpit, mine
         self._bound: dict[DeviceKey, _Bound] = {}
         self._keys = {binding.role: binding.key for binding in cockpit.roles}
         self._bits = {on: list(button_bits(cockpit, on).items()) for on in ("wheel", "shifter")}
@@ -208,7 +209,7 @@ class SdlSource:
         count = pygame.joystick.get_count()
         if count != self._count:  # also where someone else in this process has emptied the queue
             self._count, arrived = count, True
-            present = {entry.instance_id for entry, _ in connected_joysticks(pygame)}
+            present = {entry.instance_id for entry, _ in self._connected()}
             self._bound = {k: bound for k, bound in self._bound.items() if bound.instance_id in present}
         for bound in self._bound.values():
             for instance_id, button in presses:
@@ -217,12 +218,15 @@ class SdlSource:
         return arrived
 
     def _bind(self) -> None:
-        connected = connected_joysticks(self._pygame)
+        connected = self._connected()
         for binding in self._cockpit.roles:
             for device in binding.candidates:
                 for entry, joystick in connected:
                     if binding.key not in self._bound and is_device(entry, device) and _fits(entry, device):
                         self._bound[binding.key] = _Bound(entry, joystick)
+
+    def _connected(self) -> list[tuple[JoystickInfo, Any]]:
+        return [found for found in connected_joysticks(self._pygame) if self._mine(found[0].instance_id)]
 
     def _readable(self, role: RoleName) -> _Bound | None:
         bound = self._bound.get(self._keys[role])
@@ -238,7 +242,7 @@ class SdlSource:
 
     def _missing(self, binding: RoleBinding) -> DeviceError:
         wanted = f"{binding.vendor_id:04x}:{binding.product_id:04x}"
-        present = [entry for entry, _ in connected_joysticks(self._pygame)]
+        present = [entry for entry, _ in self._connected()]
         for mode in self._cockpit.boot_modes:
             if any((entry.vendor_id, entry.product_id) == (mode.vendor_id, mode.product_id) for entry in present):
                 boot = f"{mode.vendor_id:04x}:{mode.product_id:04x}"
@@ -259,11 +263,7 @@ class SdlSource:
         )
 
     def _refuse_two(self, binding: RoleBinding) -> None:
-        same = [
-            entry
-            for entry, _ in connected_joysticks(self._pygame)
-            if is_device(entry, binding) and _fits(entry, binding)
-        ]
+        same = [entry for entry, _ in self._connected() if is_device(entry, binding) and _fits(entry, binding)]
         if len(same) > 1:
             ports = " or ".join(repr(entry.port) for entry in same)
             raise DeviceError(

@@ -79,6 +79,10 @@ class VirtualCockpit:
         """Return what the device of this role claims to be."""
         return self._specs[self._keys[role]]
 
+    def has(self, instance_id: int) -> bool:
+        """Return whether the joystick of this number of SDL's is one of its devices."""
+        return any(device.instance_id == instance_id for device in self._devices.values())
+
     def close(self) -> None:
         """Unplug everything."""
         while self._devices:

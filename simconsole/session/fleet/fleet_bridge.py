@@ -4,82 +4,109 @@ import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
+from subprocess import Popen
 from typing import TYPE_CHECKING
 
-from simconsole.processes.lifetimes import Interrupt
-from simconsole.session.autopilot_program import new_nonce
-from simconsole.session.headless import LOOK_S, lockstep_link
+from simconsole.processes.lifetimes import Interrupt, end, tell_to_end
+from simconsole.session.autopilot_program import PROGRAM_END_S, new_nonce, own_token, start_autopilot
+from simconsole.session.fleet.members import is_commanded
+from simconsole.session.headless import LOOK_S, lockstep_link, surroundings
 from simconsole.session.lockstep import LockstepLink
+from simconsole.session.traffic_source import TrafficSource
 from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import BridgeError
 
 if TYPE_CHECKING:
-    from simconsole.bridge.console.surroundings import Surroundings
+    from simconsole.bridge.console.endpoint import ConsoleBridge
+    from simconsole.bridge.transport.lockstep_server import LockstepBridge
 
 
 def links(
     parts: Sequence[ResolvedSession],
     consoles: Sequence[Console],
+    sights: Sequence[TrafficSource | None],
     folder: Path,
     interrupt: Interrupt,
     stack: ExitStack,
     on_bridge: Callable[[str], None],
-) -> list[LockstepLink]:
-    """Open the server, wait until somebody hears each platform's odometry, and return the platforms' links.
+) -> list[LockstepLink | None]:
+    """Open the server, start the autopilots, wait until somebody hears the odometry of each platform that is commanded.
 
     Args:
         parts: the session of each platform.
         consoles: theirs.
+        sights: the road users of each.
         folder: where topics are recorded if the session says so.
         interrupt: ends the waiting.
-        stack: closes the server.
+        stack: closes the server, and ends the autopilots.
         on_bridge: told where it listens.
 
+    Returns:
+        The link of each platform; none where the session is not in lockstep.
+
     Raises:
-        BridgeError: it cannot listen, or a platform's controller does not come in time.
+        BridgeError: it cannot listen, an autopilot cannot be started, or a platform's controller does not come in time.
         ProfileError: as `ConsoleBridge`.
     """
+    if parts[0].session.mode.pacing != "lockstep":
+        return [None] * len(parts)
     from simconsole.bridge.transport.lockstep_port import LockstepPort
     from simconsole.bridge.transport.lockstep_server import LockstepBridge
 
     bridges = [part.session.outputs.bridge for part in parts]
-    mode = parts[0].session.mode
+    mode, drive = parts[0].session.mode, new_nonce()
     first, *others = [
-        (bridge, _around(part, console)) for bridge, part, console in zip(bridges, parts, consoles, strict=True)
+        (bridge, surroundings(part, console, sight))
+        for bridge, part, console, sight in zip(bridges, parts, consoles, sights, strict=True)
     ]
     assert first[0] is not None
     server = LockstepBridge(
         first[0],
         odometry_hz=mode.control_hz,
         folder=folder,
-        drive=new_nonce(),
+        drive=drive,
         around=first[1],
         platforms=len(parts),
     )
-    stack.callback(server.close)
     ports = [LockstepPort.of_first(server)]
     for bridge, around in others:
         assert bridge is not None
         ports.append(LockstepPort.beside(server, bridge, mode.control_hz, around))
+    programs: list[Popen[bytes]] = []
+    stack.callback(end, programs, PROGRAM_END_S)
+    stack.callback(server.close)  # closes its clients' connections before the programs' end is waited for
+    stack.callback(tell_to_end, programs)
     on_bridge(server.url)
-    consoles_there = [port.console for port in ports]
-    deadline_s = time.monotonic() + mode.wait_for_controller_s
-    while (left_s := deadline_s - time.monotonic()) > 0.0:
-        if server.wait_for_client(min(left_s, LOOK_S), consoles_there):
-            return [lockstep_link(port, parts[0].session, interrupt) for port in ports]
+    _start_autopilots(parts, server.url, drive, programs)
+    awaited = [port.console for port, part in zip(ports, parts, strict=True) if is_commanded(part.session)]
+    _wait(server, awaited, programs, mode.wait_for_controller_s, interrupt)
+    return [lockstep_link(port, parts[0].session, interrupt) for port in ports]
+
+
+def _start_autopilots(parts: Sequence[ResolvedSession], url: str, drive: str, programs: list[Popen[bytes]]) -> None:
+    for part in parts:
+        session, bridge = part.session, part.session.outputs.bridge
+        if session.features.autopilot is not None:
+            assert bridge is not None
+            programs.append(start_autopilot(url, session, bridge, drive, own_token(session)))
+
+
+def _wait(
+    server: "LockstepBridge",
+    awaited: "Sequence[ConsoleBridge]",
+    programs: Sequence[Popen[bytes]],
+    patience_s: float,
+    interrupt: Interrupt,
+) -> None:
+    deadline_s = time.monotonic() + patience_s
+    while awaited and (left_s := deadline_s - time.monotonic()) > 0.0:
+        if server.wait_for_client(min(left_s, LOOK_S), awaited):
+            return
         interrupt.check()
-    raise BridgeError(
-        f"not every platform's odometry was subscribed to at {server.url} within {mode.wait_for_controller_s:g} s"
-    )
-
-
-def _around(part: ResolvedSession, console: Console) -> "Surroundings":
-    from simconsole.bridge.console.surroundings import Surroundings
-    from simconsole.control.requests.refusals import steering_limit
-    from simconsole.session.robots import robot_at_work
-
-    return Surroundings(
-        robot=robot_at_work(part.vehicle, part.world),
-        steering=steering_limit(part.session.features.control, console.platform.wheelbase_m),
-    )
+    if not awaited:
+        return
+    ended = next((program.returncode for program in programs if program.poll() is not None), None)
+    if ended is not None:
+        raise BridgeError(f"an autopilot ended with exit code {ended} before it connected")
+    raise BridgeError(f"not every platform's odometry was subscribed to at {server.url} within {patience_s:g} s")

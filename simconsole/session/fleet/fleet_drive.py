@@ -1,7 +1,7 @@
-"""The drive of a session with several platforms: everything once for each, but server, clock and arena."""
+"""The drive of a session with several platforms: everything once for each, but server, clock and world."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
@@ -13,6 +13,7 @@ from simconsole.profiles.vehicle import TurtlebotProfile
 from simconsole.recording.bundles.bundle import BundleWriter
 from simconsole.recording.bundles.manifest import Manifest
 from simconsole.recording.bundles.provenance import NOTHING_GIVEN, Given
+from simconsole.session.fleet.company import Company, Sight, sight_of
 from simconsole.session.fleet.fleet_bridge import links
 from simconsole.session.fleet.members import members
 from simconsole.session.headless import open_headless
@@ -22,7 +23,7 @@ from simconsole.session.opened import Opened
 from simconsole.session.preconditions import check_session, check_world
 from simconsole.tick.advance import Console, ConsoleState
 from simconsole.tick.assembly import ResolvedSession, assemble
-from simconsole.tick.loop import come_to_rest, steps
+from simconsole.tick.loop import Components, come_to_rest, steps
 from simconsole.tick.together import Body, Whereabouts, run_together
 from simconsole.values.host.jit import compiled
 from simconsole.values.state_vector import Snapshot
@@ -35,8 +36,9 @@ class _Member(NamedTuple):
     console: Console
     initial: ConsoleState
     bundle: BundleWriter
+    sight: Sight | None  # of the others; None for a robot, which is told of circles
     opened: Opened
-    link: LockstepLink
+    link: LockstepLink | None  # None: no lockstep
 
 
 def drive_fleet(
@@ -49,31 +51,38 @@ def drive_fleet(
 ) -> DriveResult:
     """Drive all platforms of a session into one new bundle: that of the first in `folder`, the others' below it.
 
-    `show` sees the first platform again and again. With `until_left` the drive ends when no controller is left, too.
-    `on_bridge` is told where the server listens, before anybody is waited for. Signals end all as `lifecycle.drive`
-    tells.
+    The first one is that of `scenario.seat`. `show` sees it again and again. With `until_left` the drive ends when no
+    controller is left, too. `on_bridge` is told where the server listens, before anybody is waited for. Signals end all
+    as `lifecycle.drive` tells.
 
     Raises:
         SimConsoleError: the session cannot be driven so, or a port or file cannot be opened.
     """
     sweep()
-    parts = members(resolved)
+    named = members(resolved)
+    parts = list(named.values())
     for part in parts:
         check_session(part.session)
         check_world(part)
     assembled = [assemble(part, compiled) for part in parts]
     for console, state in assembled:
         warm_up(console, state)
+    company = Company(*zip(*assembled, strict=True))
+    sights = [
+        None if isinstance(part.vehicle, TurtlebotProfile) else sight_of(company, number, part, console)
+        for number, (part, (console, _)) in enumerate(zip(parts, assembled, strict=True))
+    ]
     with ExitStack() as stack:
         interrupt = stack.enter_context(Interrupt())
-        bundles = _bundles(parts, [console for console, _ in assembled], folder, given, stack)
-        opened = _open(parts, [console for console, _ in assembled], bundles, interrupt, stack, on_bridge)
+        consoles = [console for console, _ in assembled]
+        bundles = _bundles(named, consoles, sights, folder, given, stack)
+        opened = _open(parts, consoles, sights, bundles, interrupt, stack, on_bridge)
         fleet = [
-            _Member(part, *built, bundle, *each)
-            for part, built, bundle, each in zip(parts, assembled, bundles, opened, strict=True)
+            _Member(part, *built, bundle, sight, *each)
+            for part, built, bundle, sight, each in zip(parts, assembled, bundles, sights, opened, strict=True)
         ]
         began_s = time.monotonic()
-        states = _run(fleet, interrupt, show, until_left)
+        states = _run(fleet, company, interrupt, show, until_left)
         if interrupt.raised:
             states = [
                 come_to_rest(member.console, state, member.opened.components.recorder)
@@ -96,65 +105,94 @@ def drive_fleet(
 
 
 def _bundles(
-    parts: Sequence[ResolvedSession], consoles: Sequence[Console], folder: Path, given: Given, stack: ExitStack
+    parts: Mapping[str, ResolvedSession],
+    consoles: Sequence[Console],
+    sights: Sequence[Sight | None],
+    folder: Path,
+    given: Given,
+    stack: ExitStack,
 ) -> list[BundleWriter]:
-    names = [platform.name for platform in parts[0].session.scenario.platforms]
     bundles: list[BundleWriter] = []
-    for part, console, name in zip(parts, consoles, names, strict=True):
+    for (name, part), console, sight in zip(parts.items(), consoles, sights, strict=True):
         own = folder / name if bundles else folder
-        bundles.append(stack.enter_context(bundle_of(part, console, own, given)))
+        bundle = bundle_of(part, console, own, given, among_platforms=sight is not None)
+        bundles.append(stack.enter_context(bundle))
         stack.enter_context(undone(partial(remove_half_made, own)))
         if len(bundles) == 1:
-            bundles[0].announce(names[1:])
+            bundles[0].announce(list(parts)[1:])
     return bundles
 
 
 def _open(
     parts: Sequence[ResolvedSession],
     consoles: Sequence[Console],
+    sights: Sequence[Sight | None],
     bundles: Sequence[BundleWriter],
     interrupt: Interrupt,
     stack: ExitStack,
     on_bridge: Callable[[str], None],
-) -> list[tuple[Opened, LockstepLink]]:
-    ports = links(parts, consoles, bundles[0].folder, interrupt, stack, on_bridge)
+) -> list[tuple[Opened, LockstepLink | None]]:
+    ports = links(parts, consoles, sights, bundles[0].folder, interrupt, stack, on_bridge)
     return [
-        (open_headless(part, console, bundle.log, bundle.folder, interrupt, stack, link=port), port)
-        for part, console, bundle, port in zip(parts, consoles, bundles, ports, strict=True)
+        (open_headless(part, console, bundle.log, bundle.folder, interrupt, stack, link=port, others=sight), port)
+        for part, console, sight, bundle, port in zip(parts, consoles, sights, bundles, ports, strict=True)
     ]
 
 
 def _run(
-    fleet: Sequence[_Member], interrupt: Interrupt, show: Callable[[Snapshot], None], until_left: bool
+    fleet: Sequence[_Member],
+    company: Company,
+    interrupt: Interrupt,
+    show: Callable[[Snapshot], None],
+    until_left: bool,
 ) -> list[ConsoleState]:
     session, tick_hz = fleet[0].resolved.session, fleet[0].console.tick_hz
     duration_s = session.scenario.duration_s
     ticks = ENDLESS_TICKS if duration_s is None else round(duration_s * tick_hz)
     initial = [member.initial for member in fleet]
-    whereabouts = Whereabouts([_body(member.resolved) for member in fleet], initial)
+    whereabouts = Whereabouts([_body(member.resolved, member.console) for member in fleet], initial)
     drives = [
         steps(
-            member.console,
-            member.initial,
-            member.opened.components._replace(others=whereabouts.seen_by(number)),
-            ticks,
-            lambda snapshot: interrupt.raised,
+            member.console, member.initial, _told(member, number, whereabouts), ticks, lambda snapshot: interrupt.raised
         )
         for number, member in enumerate(fleet)
     ]
 
+    has_robots = any(member.console.others for member in fleet)
+
+    def meet(states: Sequence[ConsoleState]) -> None:
+        """Tell each where the others are, all of the same moment."""
+        if has_robots:
+            whereabouts.renew(states)
+        company.renew(states)
+        for member, state in zip(fleet, states, strict=True):
+            if member.sight is not None:
+                member.sight.look(Snapshot(state.tick, tick_hz, state.vector))
+
     def finished(states: Sequence[ConsoleState]) -> bool:
-        """Show the first platform as far as it is; return whether somebody ends the drive."""
-        show(Snapshot(states[0].tick, tick_hz, states[0].vector))
-        return interrupt.raised or (until_left and not any(member.link.clients for member in fleet))
+        """Show the first platform as far as it is; return whether somebody or something ends the drive."""
+        first = Snapshot(states[0].tick, tick_hz, states[0].vector)
+        show(first)
+        if interrupt.raised or fleet[0].opened.finished(first) or any(member.opened.left() for member in fleet):
+            return True
+        return until_left and not any(member.link is not None and member.link.clients for member in fleet)
 
-    return run_together(drives, initial, whereabouts, session.mode.control_period_ticks, finished)
+    return run_together(drives, initial, meet, session.mode.control_period_ticks, finished)
 
 
-def _body(resolved: ResolvedSession) -> Body:
-    robot = resolved.vehicle
-    assert isinstance(robot, TurtlebotProfile)
-    return Body(robot.body_x_m, robot.body_radius_m)
+def _told(member: _Member, number: int, whereabouts: Whereabouts) -> Components:
+    """Return the parts of a platform's drive; a robot is told of the others in columns of its own."""
+    parts = member.opened.components
+    return parts._replace(others=whereabouts.seen_by(number)) if member.console.others else parts
+
+
+def _body(resolved: ResolvedSession, console: Console) -> Body:
+    robot, platform = resolved.vehicle, console.platform
+    if isinstance(robot, TurtlebotProfile):
+        return Body(robot.body_x_m, robot.body_x_m, robot.body_radius_m)
+    radius_m = 0.5 * platform.width_m
+    rear_m = radius_m - platform.rear_overhang_m
+    return Body(rear_m, max(rear_m, platform.length_m - platform.rear_overhang_m - radius_m), radius_m)
 
 
 def _finish(

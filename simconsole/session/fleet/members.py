@@ -1,50 +1,100 @@
 """A session with several platforms, taken apart: one session of one platform for each."""
 
+import math
+from typing import Final
+
 import msgspec
 
 from simconsole.profiles.bridge import BridgeProfile
-from simconsole.profiles.session import PlatformSection, SessionProfile, Start
+from simconsole.profiles.session import Devices, PlatformSection, SessionProfile, Start
 from simconsole.profiles.vehicle import TurtlebotProfile, VehicleProfile
-from simconsole.profiles.world import ArenaProfile
+from simconsole.profiles.world import ArenaProfile, WorldProfile
 from simconsole.session.resolution import with_start
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import ProfileError
+from simconsole.values.units import DEG_PER_RAD
+from simconsole.world.kinds.worlds import open_world
+
+APART_M: Final = 15.0
+"""How far apart platforms that say no start stand on a route."""
 
 
-def members(resolved: ResolvedSession) -> tuple[ResolvedSession, ...]:
-    """Return the session of each platform, its name being its namespace; the order is that of the session.
+def members(resolved: ResolvedSession) -> dict[str, ResolvedSession]:
+    """Return the session of each platform by its name, which is its namespace: first that of the seat, then in order.
 
-    Errors of lidar, inertial unit and odometry are drawn from the session's seeds for the first platform, and from the
-    numbers that follow for the next ones: two robots of one kind do not err alike.
+    Errors of lidar, inertial unit and odometry are drawn from the session's seeds for the session's first platform,
+    and from the numbers that follow for the next ones: two robots of one kind do not err alike.
 
     Raises:
         ProfileError: it asks for what several platforms do not have.
     """
     session = resolved.session
-    bridge, arena = _checked(session, resolved)
-    taken = []
+    _check(session)
+    seat = session.scenario.seat or session.scenario.platforms[0].name
+    taken = {}
     for number, (platform, vehicle) in enumerate(zip(session.scenario.platforms, resolved.fleet, strict=True)):
-        link = msgspec.structs.replace(bridge.link, seed=bridge.link.seed + number)
-        own_bridge = msgspec.structs.replace(bridge, namespace=f"{bridge.namespace}/{platform.name}", link=link)
-        outputs = msgspec.structs.replace(session.outputs, bridge=own_bridge)
-        own = with_start(session, _start(platform, number, arena))
-        own = msgspec.structs.replace(own, outputs=outputs)
-        taken.append(msgspec.structs.replace(resolved, session=own, vehicle=_own(vehicle, number), fleet=()))
-    return tuple(taken)
+        own = with_start(session, _start(platform, number, session, resolved.world))
+        own = _of_its_own(own, platform, number, platform.name == seat)
+        taken[platform.name] = msgspec.structs.replace(
+            resolved, session=own, vehicle=_erring(vehicle, number), fleet=()
+        )
+    return {seat: taken.pop(seat), **taken}
 
 
-def _own(vehicle: VehicleProfile, number: int) -> TurtlebotProfile:
-    """Return the robot with errors of its own."""
+def is_commanded(session: SessionProfile) -> bool:
+    """Return whether the lockstep of a platform's session waits for a controller: its autopilot, or as nobody sits."""
+    return session.features.autopilot is not None or session.devices.driver == "none"
+
+
+def _of_its_own(session: SessionProfile, platform: PlatformSection, number: int, seated: bool) -> SessionProfile:
+    """Return the session as one of its platforms has it."""
+    replace = msgspec.structs.replace
+    driver = platform.driver or (session.devices.driver if seated else "none")
+    devices: Devices = replace(session.devices, driver=driver, person=platform.person or session.devices.person)
+    scenario = replace(session.scenario, vehicle=platform.vehicle or session.scenario.vehicle)
+    features, outputs = session.features, session.outputs
+    if not seated:
+        scenario, features = replace(scenario, faults=()), replace(features, commands=None)
+    if not platform.autopilot:
+        features = replace(features, autopilot=None)
+    if outputs.bridge is not None:
+        outputs = replace(outputs, bridge=_bridge(outputs.bridge, platform.name, number))
+    own: SessionProfile = replace(session, devices=devices, scenario=scenario, features=features, outputs=outputs)
+    return own
+
+
+def _bridge(bridge: BridgeProfile, name: str, number: int) -> BridgeProfile:
+    link = msgspec.structs.replace(bridge.link, seed=bridge.link.seed + number)
+    own: BridgeProfile = msgspec.structs.replace(bridge, namespace=f"{bridge.namespace}/{name}", link=link)
+    return own
+
+
+def _erring(vehicle: VehicleProfile, number: int) -> VehicleProfile:
+    """Return the vehicle, a robot with errors of its own."""
     if not isinstance(vehicle, TurtlebotProfile):
-        raise ProfileError(f"scenario.platforms: value {number}: robots only drive together, and its vehicle is none")
+        return vehicle
     errors = msgspec.structs.replace(vehicle.odometry, seed=vehicle.odometry.seed + number)
     robot: TurtlebotProfile = msgspec.structs.replace(vehicle, odometry=errors)
     return robot
 
 
-def _start(platform: PlatformSection, number: int, arena: ArenaProfile) -> Start:
+def _start(platform: PlatformSection, number: int, session: SessionProfile, world: WorldProfile | None) -> Start:
     if platform.start is not None:
         return platform.start
+    if isinstance(world, ArenaProfile):
+        return _start_in(world, platform, number)
+    at_m, route = APART_M * number, None if world is None else open_world(world).route
+    if number == 0 and session.scenario.start is not None:
+        return session.scenario.start
+    if route is None or at_m > route.length_m - APART_M:
+        there = "the session has no world" if route is None else f"the route of {route.length_m:g} m is full"
+        raise ProfileError(f"scenario.platforms: {platform.name}: start: value missing: {there}")
+    place = route.at(at_m)
+    yaw_deg = math.remainder(place.yaw_rad, math.tau) * DEG_PER_RAD
+    return Start(x_m=place.x_m, y_m=place.y_m, yaw_deg=min(max(yaw_deg, -180.0), 180.0))
+
+
+def _start_in(arena: ArenaProfile, platform: PlatformSection, number: int) -> Start:
     named = {spot.name: spot for spot in arena.starts}
     if platform.name not in named and number >= len(arena.starts):
         raise ProfileError(
@@ -54,29 +104,23 @@ def _start(platform: PlatformSection, number: int, arena: ArenaProfile) -> Start
     return Start(x_m=spot.x_m, y_m=spot.y_m, yaw_deg=spot.yaw_deg)
 
 
-def _checked(session: SessionProfile, resolved: ResolvedSession) -> tuple[BridgeProfile, ArenaProfile]:
-    """Return bridge and arena of a session that can be driven.
+def _check(session: SessionProfile) -> None:
+    """Refuse what is one platform's alone.
 
     Raises:
-        ProfileError: it has none, or asks for what is one platform's alone.
+        ProfileError: names it.
     """
-    bridge, arena = session.outputs.bridge, resolved.world
+    bridge = session.outputs.bridge
     alone = {
-        "mode.pacing: lockstep": session.mode.pacing == "lockstep",
+        "mode.pacing: lockstep, or free with --headless": session.mode.pacing != "realtime",
         "mode.start: at_once": session.mode.start == "at_once",
-        "devices.driver: none": session.devices.driver == "none",
         "outputs.can: none": session.outputs.can is None,
-        "features.autopilot: none": session.features.autopilot is None,
         "environment.traffic: none": session.environment.traffic is None,
-        "scenario.faults: none": not session.scenario.faults,
     }
     wrong = [wanted for wanted, is_so in alone.items() if not is_so]
     if wrong:
         raise ProfileError(f"scenario.platforms: several platforms need {', '.join(wrong)}")
-    if bridge is None or bridge.upstream is not None or bridge.ros2 is not None or bridge.external_view:
-        raise ProfileError(
-            "scenario.platforms: several platforms need outputs.bridge, without upstream, ros2 and external_view"
-        )
-    if not isinstance(arena, ArenaProfile):
-        raise ProfileError(f"environment.world: value {session.environment.world}: an arena, for several platforms")
-    return bridge, arena
+    if session.mode.pacing == "lockstep" and bridge is None:
+        raise ProfileError("scenario.platforms: several platforms in lockstep need outputs.bridge")
+    if bridge is not None and (bridge.upstream is not None or bridge.ros2 is not None or bridge.external_view):
+        raise ProfileError("scenario.platforms: outputs.bridge: without upstream, ros2 and external_view, for several")

@@ -28,9 +28,14 @@ NO_CRASH: Final = Crash(frozenset(), NO_IMPACT, ())
 class Crashes:
     """Looks for touches after each step of traffic; who goes on touching is pushed on, but no new collision."""
 
-    def __init__(self, solid: Solid | None, execution: Callable[[Any], Any]) -> None:
-        """Take the vehicle's body; without one its touches are told, but move nobody."""
-        self._solid, self._struck = solid, Struck(execution)
+    def __init__(
+        self, solid: Solid | None, execution: Callable[[Any], Any], moves: Callable[[RoadUser], Moving] | None = None
+    ) -> None:
+        """Take the vehicle's body; without one its touches are told, but move nobody.
+
+        `moves` tells how a road user moves as a body; without it that is guessed by kind and size.
+        """
+        self._solid, self._struck, self._moves = solid, Struck(execution), moves or _guessed
         self._touched: frozenset[float] = frozenset()
 
     def step(self, vehicle: VehicleState, ego: Box, users: Array) -> Crash:
@@ -45,17 +50,18 @@ class Crashes:
         first = 1.0 if new else 0.0
         if self._solid is None:
             return Crash(new, NO_IMPACT._replace(first_touch=first), ())
-        impact, pushed = _impacts(_own(vehicle, self._solid), vehicle.yaw_rad, ego, heavy)
+        others = [(user, self._moves(user)) for user in heavy]
+        impact, pushed = _impacts(motion_of(vehicle, self._solid), vehicle.yaw_rad, ego, others)
         return Crash(new, impact._replace(first_touch=first), pushed)
 
 
 def _impacts(
-    own: Moving, yaw_rad: float, ego: Box, users: Iterable[RoadUser]
+    own: Moving, yaw_rad: float, ego: Box, users: Iterable[tuple[RoadUser, Moving]]
 ) -> tuple[ImpactInput, tuple[tuple[float, float], ...]]:
     """Return what users do to the vehicle, one after the other, and it to them."""
     start, pushed = own, []
-    for user in users:
-        other, box = _other(user), box_of(user)
+    for user, other in users:
+        box = box_of(user)
         contact = contact_of(ego, box, (own.vx_mps - other.vx_mps, own.vy_mps - other.vy_mps))
         changes = None if contact is None else collide(own, other, contact)
         if changes is None:
@@ -79,7 +85,8 @@ def _impacts(
     return impact, tuple(pushed)
 
 
-def _own(vehicle: VehicleState, solid: Solid) -> Moving:
+def motion_of(vehicle: VehicleState, solid: Solid) -> Moving:
+    """Return how the console's vehicle moves as a body."""
     cosine, sine = math.cos(vehicle.yaw_rad), math.sin(vehicle.yaw_rad)
     vx, vy = vehicle.vx_mps, vehicle.vy_mps + solid.cg_ahead_m * vehicle.yaw_rate_radps
     return Moving(
@@ -93,11 +100,15 @@ def _own(vehicle: VehicleState, solid: Solid) -> Moving:
     )
 
 
-def _other(user: RoadUser) -> Moving:
-    mass = MASSES_KG[RoadUserKind(int(user.kind))]
+def _guessed(user: RoadUser) -> Moving:
+    return box_moving(user, MASSES_KG[RoadUserKind(int(user.kind))])
+
+
+def box_moving(user: RoadUser, mass_kg: float) -> Moving:
+    """Return how a road user moves if it is a box that its mass fills evenly, and drives straight on."""
     return Moving(
-        mass_kg=mass,
-        yaw_inertia_kgm2=mass * (user.length_m**2 + user.width_m**2) / 12.0,
+        mass_kg=mass_kg,
+        yaw_inertia_kgm2=mass_kg * (user.length_m**2 + user.width_m**2) / 12.0,
         x_m=user.x_m,
         y_m=user.y_m,
         vx_mps=user.speed_mps * math.cos(user.yaw_rad),

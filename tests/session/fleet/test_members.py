@@ -17,7 +17,7 @@ def team(**changes: dict[str, Any]) -> SessionProfile:
 
 
 def test_each_has_its_namespace_start_and_errors() -> None:
-    parts = members(resolve(team()))
+    parts = list(members(resolve(team())).values())
     bridges = [part.session.outputs.bridge for part in parts]
     assert [bridge.namespace for bridge in bridges if bridge] == ["/tb3_0", "/tb3_1", "/tb3_2"]
     assert len({bridge.link.seed for bridge in bridges if bridge}) == 3
@@ -29,13 +29,13 @@ def test_each_has_its_namespace_start_and_errors() -> None:
 
 def test_a_start_is_taken_by_name_and_else_by_number() -> None:
     named = [{"name": "tb3_2"}, {"name": "other"}, {"name": "mine", "start": {"x_m": 4.0, "y_m": 2.0}}]
-    starts = [part.session.scenario.start for part in members(resolve(team(scenario={"platforms": named})))]
+    starts = [part.session.scenario.start for part in members(resolve(team(scenario={"platforms": named}))).values()]
     assert [(start.x_m, start.y_m) for start in starts if start] == [(1.9, 0.8), (0.8, 1.8), (4.0, 2.0)]
 
 
 def test_platforms_may_be_of_different_kinds() -> None:
     mixed = [{"name": "a"}, {"name": "b", "vehicle": "turtlebot3_waffle"}]
-    parts = members(resolve(team(scenario={"platforms": mixed})))
+    parts = list(members(resolve(team(scenario={"platforms": mixed}))).values())
     assert [part.vehicle.wheel_separation_m for part in parts] == [0.16, 0.287]  # type: ignore[union-attr]
 
 
@@ -44,10 +44,9 @@ def test_platforms_may_be_of_different_kinds() -> None:
     [
         ({"mode": {"pacing": "realtime"}}, "mode.pacing: lockstep"),
         ({"mode": {"start": "on_request"}}, "mode.start: at_once"),
-        ({"devices": {"driver": "keyboard"}}, "devices.driver: none"),
+        ({"environment": {"traffic": {}}}, "environment.traffic: none"),
         ({"outputs": {"bridge": None}}, "outputs.bridge"),
-        ({"environment": {"world": "urban"}}, "an arena"),
-        ({"scenario": {"platforms": [{"name": "a"}, {"name": "b", "vehicle": "hatchback"}]}}, "robots only"),
+        ({"environment": {"world": None}}, "tb3_0: start: value missing: the session has no world"),
         ({"scenario": {"platforms": [{"name": f"r{number}"} for number in range(4)]}}, "r3: start: value missing"),
     ],
 )
