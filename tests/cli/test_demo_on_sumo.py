@@ -1,4 +1,4 @@
-"""`simconsole demo --sumo`: the demo among SUMO's traffic, for its first seconds; refused in a line without the extra."""
+"""`simconsole demo --sumo`: its first seconds among SUMO's traffic; refused in a line without the extra."""
 
 from pathlib import Path
 

@@ -15,7 +15,7 @@ from simconsole.profiles.files.world_files import load_world
 from simconsole.values.errors import ProfileError
 from simconsole.values.signals import SignalState
 from simconsole.world.kinds.worlds import open_world
-from simconsole.world.sumo_traffic.sumo_traffic import CLEAR_M, EGO
+from simconsole.world.sumo_traffic.ego import CLEAR_M, EGO
 from simconsole.world.traffic.road_users import NOBODY, Box, RoadUser, RoadUserKind, users
 from tests.world.sumo_traffic.on_sumo import LENGTH_M, NET, around, box, configuration, sumo_traffic
 
