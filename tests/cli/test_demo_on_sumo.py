@@ -6,6 +6,7 @@ import pytest
 
 from simconsole.cli import demo
 from simconsole.cli.main import main
+from simconsole.cli.outcome import Outcome
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.log_header import SIGNALS
 from simconsole.recording.recorded_road_users import recorded_road_users
@@ -20,7 +21,7 @@ def test_sumo_moves_the_others_and_its_signals_hold(
 ) -> None:
     brief = override(load_session("demo"), scenario={"duration_s": 2.0}, outputs={"hud": None, "scene": None})
     monkeypatch.setattr(demo, "load_session", lambda name: brief)
-    monkeypatch.setattr(demo, "finish", lambda result, packed: demo.Outcome(0, result.summary))
+    monkeypatch.setattr(demo, "finish", lambda result, packed: Outcome(0, result.summary))
     assert main(["demo", "--sumo", *more, "--out", str(tmp_path / "bundle")]) == 0
     bundle = open_bundle(tmp_path / "bundle")
     assert bundle.manifest.summary["traffic"]["ego_error_m"] == 0.0, "only SUMO has one"
