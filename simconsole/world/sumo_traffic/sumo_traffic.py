@@ -20,8 +20,6 @@ from simconsole.world.sumo_traffic.subscriptions import Found, Numbers, SignalRe
 from simconsole.world.traffic.road_users import NOBODY, Box
 
 STOPPING_MPS2: Final = 6.0
-_SIDEWAYS: Final = ("--lateral-resolution", "1.6")
-"""Half a lane: without, who changes lanes is on the other one within a step, and heads where it likes on the way."""
 _HORIZON_S: Final = 3600.0
 _MOST_S: Final = 7200.0
 
@@ -179,11 +177,5 @@ class SumoTraffic:
         return [
             *("--net-file", str(net), "--route-files", str(routes), "--ignore-route-errors", "true"),
             *("--time-to-teleport", "-1"),
-            *(_SIDEWAYS if _has_lanes_beside(self._around.road_map) else ()),
             *options,
         ]
-
-
-def _has_lanes_beside(road_map: RoadMap) -> bool:
-    """Return whether anybody can change lanes: where nobody can, moving sideways would cost time for nothing."""
-    return any(sum(road_map.lanes[lane].drivable for lane in edge.lanes) > 1 for edge in road_map.edges)
