@@ -46,6 +46,7 @@ class Trips(NamedTuple):
 
     stops: float
     waiting_s: float
+    time_loss_s: float
     duration_s: float
     fuel_g: float
 
@@ -155,7 +156,7 @@ def _read(path: Path) -> Trips:
         if element.tag == "tripinfo":
             emissions = element.find("emissions")
             assert emissions is not None
-            names = ("waitingCount", "waitingTime", "duration")
+            names = ("waitingCount", "waitingTime", "timeLoss", "duration")
             rows.append(
                 (*(float(element.attrib[name]) for name in names), float(emissions.attrib["fuel_abs"]) / 1000.0)
             )

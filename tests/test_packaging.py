@@ -106,6 +106,15 @@ def test_every_library_is_pinned_at_a_version_that_fits() -> None:
         assert requirement.specifier.contains(pins[normalised(requirement.name)]), text
 
 
+def test_extra_sumo_is_one_version_of_all() -> None:
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
+    parts = {one.name: str(one.specifier) for one in map(Requirement, extras["sumo"])}
+    assert set(parts) == {"eclipse-sumo", "libsumo", "traci"}
+    assert len(set(parts.values())) == 1
+    assert all(pin.startswith("==") for pin in parts.values())
+    assert set(extras["sumo"]) <= set(extras["dev"]), "the one that the tests run"
+
+
 def normalised(name: str) -> str:
     return re.sub(r"[-_.]+", "-", name).lower()
 

@@ -10,9 +10,13 @@ from simconsole.cli.driven import finish
 from simconsole.cli.outcome import Outcome
 from simconsole.cli.progress import Progress
 from simconsole.profiles.link import LinkProfile
+from simconsole.profiles.session import SessionProfile
+from simconsole.profiles.traffic import SumoProfile, TrafficProfile
 from simconsole.session.lifecycle import drive
 from simconsole.session.resolution import load_session, override, resolve
+from simconsole.values.errors import ProfileError
 from simconsole.world.kinds.worlds import route_length_m
+from simconsole.world.sumo_traffic.engines import missing
 
 
 def demo(options: Namespace) -> Outcome:
@@ -21,6 +25,8 @@ def demo(options: Namespace) -> Outcome:
     if options.perfect and session.outputs.bridge is not None:
         bridge = msgspec.structs.replace(session.outputs.bridge, link=LinkProfile())
         session = msgspec.structs.replace(session, outputs=msgspec.structs.replace(session.outputs, bridge=bridge))
+    if options.sumo:
+        session = _on_sumo(session)
     if options.realtime:
         session = override(session, mode={"pacing": "realtime"})
     resolved = resolve(session)
@@ -28,3 +34,15 @@ def demo(options: Namespace) -> Outcome:
     with Progress("driving", route_length_m(resolved.world)) as progress:
         result = drive(resolved, folder, show=progress.show)
     return finish(result, packed=not options.no_pack)
+
+
+def _on_sumo(session: SessionProfile) -> SessionProfile:
+    """Return `session` with as many of SUMO's road users as it has of its own; refuse what SUMO is missing for."""
+    traffic = session.environment.traffic or TrafficProfile()
+    sumo = SumoProfile(vehicles=traffic.vehicles, pedestrians=traffic.pedestrians)
+    lacking = missing(sumo)
+    if lacking is not None:
+        raise ProfileError(f"command line: --sumo: value missing: {lacking}")
+    traffic = msgspec.structs.replace(traffic, sumo=sumo)
+    environment = msgspec.structs.replace(session.environment, traffic=traffic)
+    return msgspec.structs.replace(session, environment=environment)

@@ -34,7 +34,7 @@ def doctor(options: Namespace) -> Outcome:
         "display": _yes(bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")), "no window; PNG works"),
         "shared memory": _yes(Path("/dev/shm").is_dir(), "a temporary folder takes its place"),
         "real-time scheduling": _yes(_may_use_fifo(), "the tick loop runs without it, later under load"),
-        "SUMO": _sumo(),
+        **_sumo(),
         "local programs": _LOCAL_PROGRAMS,
     }
     return Outcome(0, found, table(list(found.items())))
@@ -47,13 +47,22 @@ def _version(name: str) -> str:
         return "missing"
 
 
-def _sumo() -> str:
-    from simconsole.profiles.traffic import SumoProfile
-    from simconsole.world.sumo_traffic.engines import missing
+def _sumo() -> dict[str, str]:
+    """Return a row for each part of SUMO: two back ends, the program behind one of them, and netconvert."""
+    from simconsole.world.sumo.netconvert import netconvert
+    from simconsole.world.sumo_traffic.engines import has, sumo_program
 
-    lacking = [missing(SumoProfile(backend="libsumo")), missing(SumoProfile(backend="traci"))]
-    told = [one for one in lacking if one is not None]
-    return f"no: environment.traffic.sumo needs {'; '.join(told)}" if told else f"yes: {_version('libsumo')}"
+    backend = "environment.traffic.sumo with backend"
+    return {
+        "libsumo": _version_or("libsumo", has("libsumo"), f"{backend} libsumo needs the extra `sumo`"),
+        "traci": _version_or("traci", has("traci"), f"{backend} traci needs the extra `sumo`"),
+        "program sumo": _yes(sumo_program() is not None, f"{backend} traci needs it, or the address of one elsewhere"),
+        "netconvert": _yes(netconvert() is not None, "OpenDRIVE and OpenStreetMap cannot be imported"),
+    }
+
+
+def _version_or(name: str, is_there: bool, otherwise: str) -> str:
+    return f"yes: {_version(name)}" if is_there else f"no: {otherwise}"
 
 
 def _yes(has: bool, otherwise: str) -> str:

@@ -62,6 +62,8 @@ class Closing(Protocol):
 class Awaited(Protocol):
     """Traffic that is moved in a process of its own."""
 
+    late_steps: int  # in which it had not answered yet: everybody stayed where they were
+
     def road_users(self) -> Array:
         """Return where everybody is."""
 
@@ -214,7 +216,9 @@ class TrafficSource:
         """Return what the drive's summary says of traffic."""
         lost = {} if self.lost() is None else {"lost": self.lost()}
         error = {"ego_error_m": self._traffic.ego_error_m} if isinstance(self._traffic, Closing) else {}
-        return {"traffic": {"road_users": len(self._newest.users), "collisions": self.collisions, **error, **lost}}
+        late = {"late_steps": self._traffic.late_steps} if isinstance(self._traffic, Awaited) else {}
+        told = {"road_users": len(self._newest.users), "collisions": self.collisions, **error, **late, **lost}
+        return {"traffic": told}
 
 
 def open_traffic(resolved: ResolvedSession, console: Console, run_folder: Path | None = None) -> TrafficSource | None:

@@ -144,10 +144,10 @@ def build_console(
 
 @lru_cache(maxsize=8)  # platforms of a session that are alike have one
 def _whole(
-    execution: Execution, strike: Stage | None, step: Step, look: Stage | None, feel: Stage | None
+    execution: Execution, strike: Stage | None, step: Step, look: Stage | None, torque: Stage | None
 ) -> Callable[..., Any]:
     """Return the kernel that makes one tick after the other, compiled as a whole."""
-    return execution(_block_of(in_order(decide, strike, step, look, feel, None)))
+    return execution(_block_of(in_order(decide, strike, step, look, torque, None)))
 
 
 def _initial(platform: Platform) -> Row:

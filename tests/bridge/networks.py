@@ -2,13 +2,16 @@
 
 import ctypes
 import json
+import math
 import os
 import socket
 import struct
+import threading
+from collections import deque
 from pathlib import Path
 from typing import Any, Self
 
-from tests.patience import PATIENCE_S
+from tests.patience import PATIENCE_S, pause, stamp_ns
 
 _SO_ATTACH_FILTER = 26
 _LOAD_RANDOM = (0x20, 0, 0, 0xFFFFF038)  # ld [SKF_AD_OFF + SKF_AD_RANDOM]
@@ -46,6 +49,74 @@ def far_end(sock: socket.socket) -> socket.socket:
             pass
         other.close()
     raise LookupError("the other side is not in this process")
+
+
+class Chaos:
+    """A wire that takes its time: everything is passed on after a delay, and not faster than a rate.
+
+    It listens on every address of its machine, and carries one connection to a port of `host`.
+    """
+
+    def __init__(
+        self, port: int, delay_s: float, bytes_per_s: float = math.inf, *, host: str = "127.0.0.1", at: str = ""
+    ) -> None:
+        self._delay_s, self._bytes_per_s = delay_s, bytes_per_s
+        self._listener = socket.create_server((at, 0))
+        self.port = int(self._listener.getsockname()[1])
+        self._target = (host, port)
+        self._ends: tuple[socket.socket, ...] = ()
+        self._threads = [threading.Thread(target=self._accept)]
+        self._threads[0].start()
+
+    def _accept(self) -> None:
+        while not self._ends:
+            try:
+                near, _ = self._listener.accept()
+            except OSError:  # it is over
+                return
+            try:
+                self._ends = (near, socket.create_connection(self._target))
+            except OSError:  # nobody there yet: whoever wants to go there comes again
+                near.close()
+        for source, sink in (self._ends, self._ends[::-1]):
+            waiting: deque[tuple[float, bytes]] = deque()
+            arrived = threading.Semaphore(0)
+            for work in (self._take, self._pass_on):
+                thread = threading.Thread(target=work, args=(source, sink, waiting, arrived))
+                self._threads.append(thread)
+                thread.start()
+
+    def _take(self, source: socket.socket, sink: socket.socket, waiting: Any, arrived: threading.Semaphore) -> None:
+        data = b"x"
+        while data:
+            try:
+                data = source.recv(1500)
+            except OSError:
+                data = b""
+            waiting.append((stamp_ns() / 1e9 + self._delay_s, data))
+            arrived.release()
+
+    def _pass_on(self, source: socket.socket, sink: socket.socket, waiting: Any, arrived: threading.Semaphore) -> None:
+        while True:
+            arrived.acquire()
+            due_s, data = waiting.popleft()
+            pause(max(0.0, due_s - stamp_ns() / 1e9) + len(data) / self._bytes_per_s)
+            if not data:
+                sink.close()
+                return
+            try:
+                sink.sendall(data)
+            except OSError:
+                return
+
+    def stop(self) -> None:
+        self._listener.shutdown(socket.SHUT_RDWR)  # which wakes who waits there
+        self._listener.close()
+        for thread in self._threads:
+            thread.join(timeout=PATIENCE_S)
+            assert not thread.is_alive()
+        for end in self._ends:
+            end.close()
 
 
 TEXT, BINARY, CLOSE, PING, PONG = 1, 2, 8, 9, 10

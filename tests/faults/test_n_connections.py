@@ -3,9 +3,7 @@
 import asyncio
 import json
 import socket
-import threading
 import tracemalloc
-from collections import deque
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from time import process_time
@@ -19,8 +17,8 @@ from simconsole.bridge.transport.server import BridgeServer
 from simconsole.bridge.transport.sockets import is_unacknowledged
 from simconsole.profiles.bridge import BridgeLimits, BridgeProfile
 from simconsole.values.signals import Event
-from tests.bridge.networks import CLOSE, Raw, far_end, go_deaf, lose
-from tests.patience import PATIENCE_S, pause, stamp_ns, until
+from tests.bridge.networks import CLOSE, Chaos, Raw, far_end, go_deaf, lose
+from tests.patience import PATIENCE_S, stamp_ns, until
 from tests.samples import Measured
 
 CONTROL = "/control/command/control_cmd"
@@ -263,62 +261,6 @@ def test_n05_slow_reader_gets_the_newest(serving: Callable[..., Any]) -> None:
                 gaps += number > newest + 1
                 newest = number
         assert gaps
-
-
-class Chaos:
-    """A wire that takes its time: everything is passed on after a delay, and not faster than a rate."""
-
-    def __init__(self, port: int, delay_s: float, bytes_per_s: float) -> None:
-        self._delay_s, self._bytes_per_s = delay_s, bytes_per_s
-        self._listener = socket.create_server(("127.0.0.1", 0))
-        self.port = int(self._listener.getsockname()[1])
-        self._target = port
-        self._ends: tuple[socket.socket, ...] = ()
-        self._threads = [threading.Thread(target=self._accept)]
-        self._threads[0].start()
-
-    def _accept(self) -> None:
-        near, _ = self._listener.accept()
-        far = socket.create_connection(("127.0.0.1", self._target))
-        self._ends = (near, far)
-        for source, sink in ((near, far), (far, near)):
-            waiting: deque[tuple[float, bytes]] = deque()
-            arrived = threading.Semaphore(0)
-            for work in (self._take, self._pass_on):
-                thread = threading.Thread(target=work, args=(source, sink, waiting, arrived))
-                self._threads.append(thread)
-                thread.start()
-
-    def _take(self, source: socket.socket, sink: socket.socket, waiting: Any, arrived: threading.Semaphore) -> None:
-        data = b"x"
-        while data:
-            try:
-                data = source.recv(1500)
-            except OSError:
-                data = b""
-            waiting.append((stamp_ns() / 1e9 + self._delay_s, data))
-            arrived.release()
-
-    def _pass_on(self, source: socket.socket, sink: socket.socket, waiting: Any, arrived: threading.Semaphore) -> None:
-        while True:
-            arrived.acquire()
-            due_s, data = waiting.popleft()
-            pause(max(0.0, due_s - stamp_ns() / 1e9) + len(data) / self._bytes_per_s)
-            if not data:
-                sink.close()
-                return
-            try:
-                sink.sendall(data)
-            except OSError:
-                return
-
-    def stop(self) -> None:
-        self._listener.close()
-        for thread in self._threads:
-            thread.join(timeout=PATIENCE_S)
-            assert not thread.is_alive()
-        for end in self._ends:
-            end.close()
 
 
 @pytest.mark.fault("N06")

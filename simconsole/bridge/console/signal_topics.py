@@ -26,7 +26,7 @@ class SignalTopics:
         """Return their rows of the table of output topics."""
         return (
             OutputTopic(STOP_LINES, "simconsole_msgs/StopLines", ONCE, self._stop_lines),
-            OutputTopic(SIGNALS, SIGNALS_TYPE, _SIGNALS_HZ, self._shown),
+            OutputTopic(SIGNALS, SIGNALS_TYPE, _SIGNALS_HZ, self._shown, measured=True),
         )
 
     def _shown(self, tick: PublishedTick) -> Any:

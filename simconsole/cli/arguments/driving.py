@@ -23,6 +23,7 @@ def driving(commands: Any) -> None:
 def _demo_and_drive(commands: Any) -> None:
     demo = command(commands, "demo", "demo:demo", "the whole way once, with no hardware: person, autopilot, report")
     demo.add_argument("--perfect", action="store_true", help="exact odometry and no delay on the autopilot's link")
+    demo.add_argument("--sumo", action="store_true", help="among SUMO's traffic, by SUMO's signals (extra `sumo`)")
     demo.add_argument("--realtime", action="store_true", help="pace it, with every worker in its own process")
     demo.add_argument("--out", metavar="DIR", help="where the bundle goes (default: out/demo-TIME)")
 

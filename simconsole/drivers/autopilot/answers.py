@@ -10,7 +10,7 @@ from simconsole.drivers.autopilot.yields import Yields
 from simconsole.drivers.path_tracker.approach import why_not
 from simconsole.drivers.path_tracker.geometric import GeometricTracker, pure_pursuit, stanley
 from simconsole.drivers.path_tracker.plan import Place, plan
-from simconsole.drivers.path_tracker.signal_stops import Light, SignalStops
+from simconsole.drivers.path_tracker.signal_stops import OVERTAKEN_S, Light, SignalStops
 from simconsole.drivers.path_tracker.speed_profile import Stop
 from simconsole.drivers.path_tracker.state_estimator import VehicleMotion
 from simconsole.drivers.path_tracker.tracker import Tracker, TrackerCommand
@@ -22,8 +22,6 @@ from simconsole.world.route import Route
 _LAWS: Final = {"pure_pursuit": pure_pursuit, "stanley": stanley}
 _END_M: Final = 0.5
 _STANDING_MPS: Final = 0.05
-_OVERTAKEN_S: Final = 2.0
-"""An odometry that is older than the newest one by more than a link's longest delay is of a drive that begins."""
 
 
 def make_tracker(
@@ -61,7 +59,7 @@ class Answers:
     def answer(self, seen: VehicleMotion, engaged: bool, stamp_s: float) -> TrackerCommand | None:
         """Return the command that answers what was seen at `stamp_s`; None: none is given, as for what is overtaken."""
         tracker, statistics = self._tracker, self.statistics
-        if self._newest_s - _OVERTAKEN_S <= stamp_s < self._newest_s:
+        if self._newest_s - OVERTAKEN_S <= stamp_s < self._newest_s:
             statistics.skipped += 1
             return None
         if stamp_s < self._newest_s:

@@ -22,6 +22,8 @@ FIRM_MPS2: Final = 2.1
 """The strongest deceleration that is planned for a light; the speed control adds what it needs to follow."""
 OLD_S: Final = 1.0
 """A light of which nothing was heard for longer counts as red."""
+OVERTAKEN_S: Final = 2.0
+"""What is older than the newest by more than a link's longest delay is of a drive that begins."""
 _SET_OFF_MPS2: Final = 1.2
 _RISING_S: Final = 0.4  # way that is driven before the deceleration is there: it rises, and fades, with bounded jerk
 _FADING_M: Final = 0.7
@@ -73,8 +75,11 @@ class SignalStops:
         self._at_green = False
 
     def see(self, lights: Mapping[tuple[str, int], Light]) -> None:
-        """Take what lights show, by the signal's name and link."""
-        self._shown.update(lights)
+        """Take what lights show, by the signal's name and link; what newer messages have overtaken tells nothing."""
+        for name, light in lights.items():
+            known = self._shown.get(name)
+            if known is None or not known.stamp_s - OVERTAKEN_S <= light.stamp_s < known.stamp_s:
+                self._shown[name] = light
 
     def state(self, signal: int, link: int) -> int:
         """Return what a link was told to show last, by the places of signal and link in the map; red if nothing was."""

@@ -46,6 +46,7 @@ class SumoPort:
         self.signals = RunningSignals(road_map, tick_hz)
         self.lost: str | None = None
         self.ego_error_m = 0.0
+        self.late_steps = 0
         self._users, self._answered, self._changes = NOBODY, 0, 0
 
     def wait(self, alive: Callable[[], bool], patience_s: float = _START_S) -> None:
@@ -76,6 +77,7 @@ class SumoPort:
         if self.lost is None:
             self._take()
             self._look()
+            self.late_steps += self._answered < self._memory.asked.newest
         if self.lost is None:
             self._ask(self._ego if ego is None else ego)
         return self._users

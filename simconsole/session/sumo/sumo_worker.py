@@ -32,6 +32,7 @@ LOOK_S: Final = 0.002
 MOST_AT_ONCE: Final = 5
 """Steps that are made up for when SUMO was late; of more, SUMO's time stands still for the rest."""
 NAME: Final = "sumo"
+_logger = logging.getLogger(__name__)
 
 
 class SumoWorker(Worker, frozen=True, kw_only=True):
@@ -83,7 +84,7 @@ class SumoWorker(Worker, frozen=True, kw_only=True):
         answers = _Answers(memory, traffic, signal_bytes(traffic.road_map))
         answers.put(0)
         memory.say(How.RUNS)
-        done = 0
+        done, stood = 0, 0
         while traffic.lost is None and not stop():
             newest = memory.asked.newest
             if newest == done:
@@ -92,6 +93,9 @@ class SumoWorker(Worker, frozen=True, kw_only=True):
             steps = memory.asked.since(done)[-MOST_AT_ONCE:]
             if (late := newest - done - len(steps)) > 0:
                 traffic.stand(late)
+                if not stood:
+                    _logger.warning("SUMO is too slow for the drive: its time stands still for %d steps at first", late)
+                stood += late
             for record in steps:
                 done = record.number
                 _step(memory, traffic, record)
@@ -138,7 +142,7 @@ def _step(memory: SumoMemory, traffic: SumoTraffic, record: Record) -> None:
 
 def _give_up(memory: SumoMemory, why: str, stop: Callable[[], bool]) -> None:
     memory.say(How.LOST, why)
-    logging.getLogger(__name__).error("traffic has failed: %s", why)
+    _logger.error("traffic has failed: %s", why)
     _wait(stop)
 
 

@@ -43,11 +43,16 @@ class Engine(NamedTuple):
 def missing(profile: SumoProfile) -> str | None:
     """Return what of SUMO is not installed, None where nothing is missing."""
     name = "libsumo" if profile.backend == "libsumo" else "traci"
-    if find_spec(name) is None:
+    if not has(name):
         return f"{name}, of the extra `sumo`"
     if profile.backend == "traci" and profile.address is None and sumo_program() is None:
         return "the program sumo: the extra `sumo`, or SUMO itself"
     return None
+
+
+def has(name: str) -> bool:
+    """Return whether a back end is installed: the module `libsumo` or `traci`."""
+    return find_spec(name) is not None
 
 
 def sumo_program() -> str | None:

@@ -1,8 +1,4 @@
-"""SUMO's traffic round the console's vehicle, in the place of built-in traffic: the same step, the same table.
-
-The vehicle is one of SUMO's (EGO), which is told before every step where it is: left alone for one, SUMO would drive it
-off and take it from the road at the end of its route (eclipse-sumo/sumo issues 3993, 2401).
-"""
+"""SUMO's traffic round the console's vehicle, in the place of built-in traffic: the same step, the same table."""
 
 import math
 import tempfile
@@ -15,33 +11,15 @@ from simconsole.profiles.traffic import SumoProfile, TrafficProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.height_field import HeightField, spline_at
 from simconsole.world.roads.lane_graph import Leg
-from simconsole.world.roads.road_map import ROAD, Array, RoadMap
+from simconsole.world.roads.road_map import Array, RoadMap
 from simconsole.world.rules.running_signals import RunningSignals
 from simconsole.world.sumo_traffic.demand import demand
+from simconsole.world.sumo_traffic.ego import EGO, NO_CHECKS, Ego
 from simconsole.world.sumo_traffic.engines import KEY, open_engine, said_by
-from simconsole.world.sumo_traffic.places import bumper_of
-from simconsole.world.sumo_traffic.subscriptions import (
-    OF_PEOPLE,
-    OF_VEHICLES,
-    PERSON_FIELDS,
-    VEHICLE_FIELDS,
-    Found,
-    Numbers,
-    SignalReader,
-    position_of,
-    road_users,
-)
+from simconsole.world.sumo_traffic.subscriptions import Found, Numbers, SignalReader, position_of, road_users
 from simconsole.world.traffic.road_users import NOBODY, Box
 
-EGO: Final = "simconsole.ego"
-"""The console's vehicle in SUMO: its name, that of its type, of its route, and of the point round which people are."""
-CLEAR_M: Final = 30.0
-"""Who is as near as this to where the vehicle starts is taken off the road: SUMO's vehicles need room to stop."""
 STOPPING_MPS2: Final = 6.0
-LONG_M: Final = 100_000.0
-"""So long the vehicle's route is, where the world's route is a loop."""
-_EXACTLY: Final = 2  # keepRoute of moveToXY: at this place, on a lane or not
-_BY_THE_DRIVE: Final = 0  # speed mode: SUMO checks nothing
 _HORIZON_S: Final = 3600.0
 _MOST_S: Final = 7200.0
 
@@ -116,8 +94,8 @@ class SumoTraffic:
                 self._sumo.person.setSpeed(name, 0.0)
                 return
             if name not in self._crashed:
-                self._sumo.vehicle.setSpeedMode(name, _BY_THE_DRIVE)
-                self._sumo.vehicle.setLaneChangeMode(name, 0)
+                self._sumo.vehicle.setSpeedMode(name, NO_CHECKS)
+                self._sumo.vehicle.setLaneChangeMode(name, NO_CHECKS)
             speed_mps = self._crashed.get(name, self._sumo.vehicle.getSpeed(name)) + change_mps
             self._crashed[name] = max(0.0, speed_mps)
 
@@ -125,11 +103,7 @@ class SumoTraffic:
         """Take the ego off the road, and end SUMO or this client's part in it."""
         if self.lost is None:
             with suppress(*self._errors):
-                # First: a subscription of somebody who is gone makes the next step fail.
-                self._sumo.vehicle.unsubscribeContext(EGO, OF_VEHICLES, self._profile.radius_m)
-                self._sumo.poi.unsubscribeContext(EGO, OF_PEOPLE, self._profile.radius_m)
-                self._sumo.poi.remove(EGO)
-                self._sumo.vehicle.remove(EGO)
+                self._ego.leave()
         elif self.process is not None:
             self.process.kill()  # it answers no more
         self._stack.close()
@@ -143,34 +117,16 @@ class SumoTraffic:
             raise ProfileError(f"{KEY}.address: value with steps of {step_s:g} s: {self.period_s:g} s")
         for _ in range(round(self._profile.warm_up_s / self.period_s)):
             sumo.simulationStep()
-        self._clear(ego)
         self._reader = SignalReader(sumo, [one.id for one in self._around.road_map.signals], self._around.tick_hz)
-        sumo.vehicletype.copy("DEFAULT_VEHTYPE", EGO)
-        sumo.vehicletype.setLength(EGO, ego.length_m)
-        sumo.vehicletype.setWidth(EGO, ego.width_m)
-        sumo.route.add(EGO, self._route())
-        self._enter(ego)
+        self._ego = Ego(sumo, self._around.road_map, self._around.legs, self._profile.radius_m)
+        self._ego.begin(ego)
         # The step before the drive: what is there at tick 0.
         self._start_s = sumo.simulation.getTime() + self.period_s
         self._step(ego)
 
-    def _enter(self, ego: Box) -> None:
-        """Put the ego on the road, where it is."""
-        sumo, place = self._sumo, bumper_of(ego, self._around.road_map.moved_m)
-        sumo.vehicle.add(EGO, EGO, typeID=EGO)
-        sumo.vehicle.setSpeedMode(EGO, _BY_THE_DRIVE)
-        sumo.vehicle.setLaneChangeMode(EGO, 0)
-        sumo.vehicle.moveToXY(EGO, "", -1, place.x_m, place.y_m, place.angle_deg, _EXACTLY)
-        sumo.vehicle.subscribeContext(EGO, OF_VEHICLES, self._profile.radius_m, VEHICLE_FIELDS)
-        # People round a point that goes with the ego: vehicles and people of one name stay apart.
-        sumo.poi.add(EGO, place.x_m, place.y_m, (0, 0, 0, 0))
-        sumo.poi.subscribeContext(EGO, OF_PEOPLE, self._profile.radius_m, PERSON_FIELDS)
-
     def _step(self, ego: Box) -> None:
         sumo, moved_m = self._sumo, self._around.road_map.moved_m
-        place = bumper_of(ego, moved_m)
-        sumo.vehicle.moveToXY(EGO, "", -1, place.x_m, place.y_m, place.angle_deg, _EXACTLY)
-        sumo.poi.setPosition(EGO, place.x_m, place.y_m)
+        place = self._ego.put(ego, self.period_s)
         self._brake()
         sumo.simulationStep()
         vehicles: dict[str, Mapping[int, Any]] = dict(sumo.vehicle.getContextSubscriptionResults(EGO))
@@ -194,30 +150,6 @@ class SumoTraffic:
                 if name in self._sumo.vehicle.getIDList():
                     raise
                 del self._crashed[name]  # somebody else has taken it off the road
-
-    def _clear(self, ego: Box) -> None:
-        """Take off the road whom the ego's sudden coming would surprise."""
-        sumo, place = self._sumo, bumper_of(ego, self._around.road_map.moved_m)
-        for name in sumo.vehicle.getIDList():
-            x_m, y_m = sumo.vehicle.getPosition(name)
-            if math.hypot(x_m - place.x_m, y_m - place.y_m) < CLEAR_M:
-                sumo.vehicle.remove(name)
-
-    def _route(self) -> list[str]:
-        """Return the edges of the world's route, again and again where it is a loop."""
-        road_map, legs = self._around.road_map, self._around.legs
-        lanes, edges = road_map.lanes, road_map.edges
-        once = [edges[lanes[leg.lanes[-1]].edge].id for leg in legs]
-        if not once:
-            return [next(edge.id for edge in edges if edge.function == ROAD and lanes[edge.lanes[-1]].drivable)]
-        first, last = lanes[legs[0].lanes[0]].edge, lanes[legs[-1].lanes[-1]].edge
-        closed = any(
-            lanes[one.from_lane].edge == last and lanes[one.to_lane].edge == first for one in road_map.connections
-        )
-        if not closed or first == last:
-            return once
-        length_m = sum(lanes[leg.lanes[-1]].length_m for leg in legs)
-        return once * math.ceil(LONG_M / max(length_m, 1.0))
 
     def _options(self, profile: TrafficProfile, folder: Path) -> list[str]:
         """Return SUMO's options, and write the files that they name."""

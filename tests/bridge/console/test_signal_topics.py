@@ -11,6 +11,7 @@ from simconsole.bridge.console.signal_topics import SIGNALS, SIGNALS_TYPE, STOP_
 from simconsole.bridge.console.surroundings import Surroundings
 from simconsole.bridge.messages import standard_registry
 from simconsole.profiles.bridge import BridgeProfile
+from simconsole.profiles.link import LinkProfile, WayProfile
 from simconsole.world.rules.road_signals import IN_REACH_M, RoadSignals
 from tests.bridge.fixtures import Peer
 from tests.world.nets import CITY, generated_map
@@ -56,6 +57,29 @@ def test_far_lights_are_not_told(snapshot: Callable[..., Any]) -> None:
     signals = RoadSignals(generated_map(*CITY), HZ)
     bridge = ConsoleBridge(BridgeProfile(port=0), around=Surroundings(signals=signals))
     assert heard(bridge, [snapshot(25, x_m=-2.0 * IN_REACH_M)])[SIGNALS][0]["signals"] == []
+
+
+def test_they_go_over_the_sessions_link_and_stop_lines_do_not(snapshot: Callable[..., Any]) -> None:
+    signals = RoadSignals(generated_map(*CITY), HZ)
+    place, late_ticks = signals.stop_lines[0], HZ // 5
+    link = LinkProfile(seed=2, measurements=WayProfile(delay_ms=200.0, loss_share=0.5))
+    bridge = ConsoleBridge(BridgeProfile(port=0, link=link), around=Surroundings(signals=signals))
+    peer = Peer(bridge)
+    peer.send(op="subscribe", topic=SIGNALS, type=SIGNALS_TYPE)
+    peer.send(op="subscribe", topic=STOP_LINES, type="simconsole_msgs/StopLines")
+    came: dict[str, list[int]] = {SIGNALS: [], STOP_LINES: []}
+    for tick in range(1, 4 * HZ + 1):
+        bridge.publish(snapshot(tick, x_m=place.x_m, y_m=place.y_m), 0)
+        for message in peer.heard():
+            stamp, seen = message["msg"]["header"]["stamp"], message["msg"].get("signals")
+            made = round((stamp["sec"] + stamp["nanosec"] * 1e-9) * HZ)
+            came[message["topic"]].append(tick - made)
+            assert seen is None or [tuple(one.values()) for one in seen] == [
+                tuple(one) for one in signals.in_reach(place.x_m, place.y_m, made)
+            ], "as they were then"
+    assert set(came[SIGNALS]) == {late_ticks}
+    assert 8 < len(came[SIGNALS]) < 30, "of 38"
+    assert came[STOP_LINES] == [0]
 
 
 def test_world_without_lights_tells_so(snapshot: Callable[..., Any]) -> None:

@@ -9,6 +9,7 @@ from simconsole.drivers.path_tracker.signal_stops import (
     FIRM_MPS2,
     GAP_M,
     OLD_S,
+    OVERTAKEN_S,
     Light,
     SignalStops,
     arrival_s,
@@ -150,3 +151,12 @@ def test_times_and_decelerations() -> None:
     assert arrival_s(plan, 200.0, 199.0, 5.0) == 0.0
     assert needed_mps2(0.0, 0.0) == 0.0
     assert needed_mps2(5.0, 13.0) > FIRM_MPS2
+
+
+def test_what_newer_messages_have_overtaken_tells_nothing_but_that_of_a_new_drive_does() -> None:
+    stops = SignalStops([StopLine(LINE_M, 0, 2)], ["light"], FRONT_M)
+    for state, stamp_s in ((RED, 10.0), (GREEN, 9.9)):
+        stops.see({("light", 2): Light(state, YELLOW, 5.0, stamp_s)})
+    assert stops.state(0, 2) == RED
+    stops.see({("light", 2): Light(GREEN, YELLOW, 5.0, 10.0 - OVERTAKEN_S - 0.1)})
+    assert stops.state(0, 2) == GREEN

@@ -15,7 +15,7 @@ from simconsole.profiles.files.world_files import load_world
 from simconsole.values.errors import ProfileError
 from simconsole.values.signals import SignalState
 from simconsole.world.kinds.worlds import open_world
-from simconsole.world.sumo_traffic.sumo_traffic import CLEAR_M, EGO
+from simconsole.world.sumo_traffic.ego import CLEAR_M, EGO, has_jumped
 from simconsole.world.traffic.road_users import NOBODY, Box, RoadUser, RoadUserKind, users
 from tests.world.sumo_traffic.on_sumo import LENGTH_M, NET, around, box, configuration, sumo_traffic
 
@@ -92,6 +92,61 @@ def test_nobody_is_near_where_the_ego_comes_and_nobody_is_surprised() -> None:
     assert len(near) > 5
     assert min(near) > CLEAR_M - 6.0
     assert hardest < 5.0, "who brakes brakes as for anybody who stands there"
+
+
+def test_nobody_is_surprised_by_an_ego_that_jumps_and_it_goes_on_exactly() -> None:
+    """Trap 5: an operator's restart, and steps that were left out, put it elsewhere all at once."""
+    ways = [on_route(250.0 + 0.4 * k, 10.0) for k in range(50)]
+    ways += [on_route(900.0)] * 50  # set back to another place, where it stands
+    ways += [on_route(900.0 + 0.4 * k, 10.0) for k in range(25)]
+    ways += [on_route(960.0 + 0.4 * k, 10.0) for k in range(25)]  # 50 m were left out
+    speeds: dict[float, float] = {}
+    hardest, seen = 0.0, 0
+    with sumo_traffic(ways[0], vehicles=150, pedestrians=20, warm_up_s=30.0) as traffic:
+        for before, way in pairwise(ways):
+            found = users(traffic.step(way))
+            assert traffic.ego_error_m == 0.0
+            jumped = math.hypot(way.x_m - before.x_m, way.y_m - before.y_m) > 5.0
+            for user in found:
+                if user.kind == RoadUserKind.PEDESTRIAN:
+                    continue  # they stop at once
+                if jumped:
+                    assert math.hypot(user.x_m - way.x_m, user.y_m - way.y_m) > CLEAR_M - 6.0
+                if math.hypot(user.x_m - way.x_m, user.y_m - way.y_m) < 100.0:
+                    hardest = max(hardest, (speeds.get(user.id, 0.0) - user.speed_mps) / STEP_S)
+                speeds[user.id] = user.speed_mps
+            seen += any(user.kind == RoadUserKind.PEDESTRIAN for user in found)
+        assert traffic._sumo.vehicle.getSpeed(EGO) == pytest.approx(10.0, abs=0.5)
+        assert traffic.lost is None
+    assert hardest < 5.0
+    assert seen > 100, "people round it are asked for anew"
+
+
+def test_which_ways_are_jumps() -> None:
+    at = box(10.0, speed_mps=14.0)
+    assert not has_jumped(at, at._replace(x_m=10.0 + 14.0 * STEP_S), STEP_S)
+    assert not has_jumped(at._replace(speed_mps=0.0), at._replace(x_m=10.7), STEP_S), "pushed aside"
+    assert has_jumped(at, at._replace(x_m=10.0 + 4 * 14.0 * STEP_S), STEP_S), "three steps were left out"
+
+
+def test_others_neither_tremble_nor_snap_round() -> None:
+    """Trap 4, where lanes cannot be changed: nobody moves across the way that they head, or turns at once."""
+    start = on_route(250.0)
+    with sumo_traffic(start, vehicles=100, radius_m=2000.0, warm_up_s=20.0) as traffic:
+        tables = [{user.id: user for user in users(traffic.step(start))} for _ in range(400)]
+    _are_steady(tables)
+
+
+def _are_steady(tables: list[dict[float, RoadUser]]) -> None:
+    pairs = [(was[name], now[name]) for was, now in pairwise(tables) for name in was.keys() & now.keys()]
+    assert len(pairs) > 5000
+    for was, now in pairs:
+        turned = math.remainder(now.yaw_rad - was.yaw_rad, math.tau)
+        yaw, (x_m, y_m) = was.yaw_rad + 0.5 * turned, (now.x_m - was.x_m, now.y_m - was.y_m)
+        assert abs(turned) < 0.3
+        assert abs(y_m * math.cos(yaw) - x_m * math.sin(yaw)) < 0.5
+        along_m = x_m * math.cos(yaw) + y_m * math.sin(yaw)
+        assert abs(along_m - 0.5 * STEP_S * (was.speed_mps + now.speed_mps)) < 0.5
 
 
 class Counted:
