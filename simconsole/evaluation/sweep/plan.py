@@ -11,6 +11,7 @@ import msgspec
 import numpy as np
 
 from simconsole import __version__
+from simconsole.evaluation.metrics.registered import GROUP as METRICS
 from simconsole.evaluation.sweep.task import Task, to_bytes
 from simconsole.profiles.files.loader import MAX_BYTES, read_text_of
 from simconsole.profiles.scenario import ScenarioProfile
@@ -29,6 +30,7 @@ from simconsole.session.resolution import (
 )
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import ProfileError
+from simconsole.values.registered import identities
 
 LONGEST_S = 3600.0
 """Simulated time of a session's drive that nothing else ends."""
@@ -126,7 +128,7 @@ def _changed(resolved: ResolvedSession, values: dict[str, Value], origin: str) -
 
 
 def _digest(tasks: Sequence[Task]) -> str:
-    found = hashlib.sha256(__version__.encode())
+    found = hashlib.sha256("\n".join((__version__, *identities(METRICS))).encode())
     for task in tasks:
         found.update(to_bytes(task))
     return found.hexdigest()

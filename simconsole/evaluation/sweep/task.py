@@ -88,6 +88,8 @@ def _session(task: Task, folder: Path) -> TaskResult:
     result = lifecycle.drive(task.resolved, folder, given=Given(trial=f"{task.source} {task.index}").checked())
     if result.interrupted:
         raise KeyboardInterrupt
+    if result.failure is not None:
+        raise result.failure
     if result.recording_failure is not None:
         return TaskResult(index=task.index, outcome="refused", detail=result.recording_failure)
     found = dict(numbers_of(_read(folder), task.resolved))
