@@ -4,8 +4,8 @@ from typing import Any, Final
 
 from simconsole.cli.arguments.command import command
 
-NEW_KINDS: Final = ("controller", "driver", "scenario", "vehicle", "platform", "metric", "world", "session")
-"""Kinds of templates; driver, platform and metric are packages that register themselves."""
+NEW_KINDS: Final = ("controller", "driver", "scenario", "vehicle", "platform", "metric", "world", "place", "session")
+"""Kinds of templates; driver, platform, metric and place are packages that register themselves."""
 
 
 def tools(commands: Any) -> None:

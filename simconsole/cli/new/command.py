@@ -6,7 +6,7 @@ from pathlib import Path
 from string import Template
 from typing import Final
 
-from simconsole.cli.new import driver_texts, metric_texts, platform_texts, texts
+from simconsole.cli.new import driver_texts, metric_texts, platform_texts, texts, world_texts
 from simconsole.cli.outcome import Outcome
 from simconsole.profiles.files.loader import find
 from simconsole.values.errors import ProfileError
@@ -33,6 +33,12 @@ KINDS: Final = {
         "test_$name.py": metric_texts.TEST,
     },
     "world": {"$name.plan.yaml": texts.WORLD_PLAN, "test_$name.py": texts.TEST_WORLD},
+    "place": {
+        "pyproject.toml": world_texts.PROJECT,
+        "$name.py": world_texts.WORLD,
+        "$name.yaml": world_texts.PROFILE,
+        "test_$name.py": world_texts.TEST,
+    },
     "session": {"$name.yaml": texts.SESSION, "test_$name.py": texts.TEST_SESSION},
 }
 """Files of each kind; a vehicle's profile, a world and a golden are made from what is there."""
