@@ -22,10 +22,12 @@ def environment(**changes: str) -> dict[str, str]:
     return {**kept, "SDL_VIDEODRIVER": "dummy", **changes}
 
 
-def simconsole(*arguments: object, **changes: str) -> "subprocess.CompletedProcess[str]":
+def simconsole(
+    *arguments: object, patience_s: float = PATIENCE_S, **changes: str
+) -> "subprocess.CompletedProcess[str]":
     """Run one command to its end, with pipes for its output."""
     return subprocess.run(
-        words(*arguments), capture_output=True, text=True, timeout=PATIENCE_S, env=environment(**changes), check=False
+        words(*arguments), capture_output=True, text=True, timeout=patience_s, env=environment(**changes), check=False
     )
 
 
