@@ -12,6 +12,7 @@ import numpy as np
 
 from simconsole import __version__
 from simconsole.evaluation.metrics.registered import GROUP as METRICS
+from simconsole.evaluation.sweep.scenario_values import of_scenario, with_scenario_values
 from simconsole.evaluation.sweep.task import Task, to_bytes
 from simconsole.profiles.files.loader import MAX_BYTES, read_text_of
 from simconsole.profiles.scenario import ScenarioProfile
@@ -75,12 +76,13 @@ def load_plan(path: Path) -> Plan:
     for source in _sources(profile, path):
         for combination in product(*axes):
             values = dict(chain.from_iterable(part.items() for part in combination))
+            own, others = of_scenario(values)
             task = Task(
                 index=len(tasks),
                 source=source.name,
                 values=values,
-                resolved=_changed(source.resolved, values, str(path)),
-                scenario=source.scenario,
+                resolved=_changed(source.resolved, others, str(path)),
+                scenario=with_scenario_values(source.scenario, own, str(path)),
                 timeout_s=profile.timeout_s,
             )
             tasks.append(task)
