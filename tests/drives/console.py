@@ -22,10 +22,13 @@ def environment(**changes: str) -> dict[str, str]:
     return {**kept, "SDL_VIDEODRIVER": "dummy", **changes}
 
 
-def simconsole(
-    *arguments: object, patience_s: float = PATIENCE_S, **changes: str
-) -> "subprocess.CompletedProcess[str]":
+def simconsole(*arguments: object, **changes: str) -> "subprocess.CompletedProcess[str]":
     """Run one command to its end, with pipes for its output."""
+    return patient(PATIENCE_S, *arguments, **changes)
+
+
+def patient(patience_s: float, *arguments: object, **changes: str) -> "subprocess.CompletedProcess[str]":
+    """The same of a command that has much to do."""
     return subprocess.run(
         words(*arguments), capture_output=True, text=True, timeout=patience_s, env=environment(**changes), check=False
     )

@@ -4,10 +4,11 @@ import numpy as np
 
 from simconsole.session.resolution import load_scenario
 from tests.evaluation.in_memory import drive_scenario
+from tests.paths import ROOT
 
 
 def test_each_sample_of_the_trace_arrives() -> None:
-    scenario, path = load_scenario("by_hand/recorded")
+    scenario, path = load_scenario(str(ROOT / "profiles/scenarios/by_hand/recorded.yaml"))
     lines = path.with_suffix(".csv").read_text().splitlines()
     names, rows = lines[1].split(","), np.array([line.split(",") for line in lines[2:]], dtype=float)
     recorder, columns = drive_scenario(scenario)
