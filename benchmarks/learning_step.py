@@ -3,7 +3,7 @@
 Run: python benchmarks/learning_step.py [--rounds N] [--step-ms MS ...]
 
 The ticks alone are the same blocks of ticks on the same console, without action, observation and reward. Rounds are
-interleaved; the least of them counts, for anything else on the machine only adds.
+interleaved; the least of them counts, for anything else on the machine only adds. The exit code is 1 above the bar.
 """
 
 import argparse
@@ -15,6 +15,7 @@ from simconsole.cli.api.environment import DrivingEnvironment
 from simconsole.tick.advance import advance_block
 
 STEPS = 400
+BAR = 1.3
 
 
 def main() -> None:
@@ -22,9 +23,13 @@ def main() -> None:
     words.add_argument("--rounds", type=int, default=15)
     words.add_argument("--step-ms", type=int, nargs="+", default=[20, 40, 100, 200])
     given = words.parse_args()
+    ratios = []
     for step_ms in given.step_ms:
         whole, ticks = measured(DrivingEnvironment(speed_mps=8.0, step_ms=step_ms), given.rounds)
-        print(f"step of {step_ms:3d} ms: {whole:6.1f} us, its ticks alone {ticks:6.1f} us, ratio {whole / ticks:.2f}")
+        ratios.append(whole / ticks)
+        print(f"step of {step_ms:3d} ms: {whole:6.1f} us, its ticks alone {ticks:6.1f} us, ratio {ratios[-1]:.2f}")
+    if max(ratios) > BAR:
+        raise SystemExit(f"above the bar of {BAR:g}")
 
 
 def measured(environment: DrivingEnvironment, rounds: int) -> tuple[float, float]:

@@ -69,7 +69,9 @@ def _write_review(path: Path, scenarios: list[str], verdicts: list[Verdict]) -> 
 
     with_golden = [(name, verdict) for name, verdict in zip(scenarios, verdicts, strict=True) if verdict.result is None]
     reviews = [review_scenario(name) for name, verdict in with_golden if not verdict.passed]
-    write_review(path, reviews, [verdict.scenario for _, verdict in with_golden if verdict.passed])
+    passed = [verdict for _, verdict in with_golden if verdict.passed]
+    equal = [verdict.scenario for verdict in passed if verdict.exact]
+    write_review(path, reviews, equal, [verdict.scenario for verdict in passed if not verdict.exact])
 
 
 def _write_junit(path: Path, verdicts: list[Verdict]) -> None:

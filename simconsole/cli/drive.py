@@ -74,7 +74,7 @@ def _with_options(session: SessionProfile, options: Namespace) -> SessionProfile
     if options.person is not None:
         session = _with_person(session, options.person)
     if options.commands is not None:
-        session = override(session, features={"commands": options.commands, "autopilot": None})
+        session = override(session, features={"commands": options.commands, "autopilot": None, "controller": None})
         if options.headless and session.mode.pacing == "lockstep":
             session = override(session, mode={"pacing": "free"})  # nobody is left to wait for
     if options.headless:

@@ -20,14 +20,17 @@ from simconsole.values.errors import one_line
 def finish(result: DriveResult, report: bool = True, scene: bool = True, packed: bool = True) -> Outcome:
     """Write what is wanted beside the bundle, and pack it; the drive's own result does not depend on whether that went.
 
-    The code is 1 if the recording failed, and 130 if the drive was interrupted (its bundle is complete all the same).
+    The code is 1 if the recording failed, or the controller that the session names, and 130 if the drive was
+    interrupted (its bundle is complete all the same).
     """
-    code = 1 if result.recording_failure is not None else INTERRUPTED if result.interrupted else 0
+    ended = [] if result.failure is None else [("ended by", one_line(result.failure))]
+    code = 1 if ended or result.recording_failure is not None else INTERRUPTED if result.interrupted else 0
     results: dict[str, Any] = {
         "bundle": str(result.folder),
         "digest": result.digest,
         **result.summary,
         "recording_failure": result.recording_failure,
+        "failure": ended[0][1] if ended else None,
         "exports_failure": None,
         "packing_failure": None,
     }
@@ -35,11 +38,11 @@ def finish(result: DriveResult, report: bool = True, scene: bool = True, packed:
     if failed and (report or scene):  # a disk that takes no log takes no export: rerun would wait for long
         report, scene, results["exports_failure"] = False, False, "not tried, for the recording failed"
     if not result.ticks:
-        return Outcome(code, results, table([("bundle", f"{result.folder}: no tick was recorded"), *failed]))
+        return Outcome(code, results, table([("bundle", f"{result.folder}: no tick was recorded"), *ended, *failed]))
     # Packed first: what reads a few columns of a long drive is then done in seconds, not minutes.
     of_packing = _pack(result, results) if packed and not failed else []
     rows = _export(result, report, scene, results)
-    return Outcome(code, results, table(rows + of_packing + failed))
+    return Outcome(code, results, table(rows + of_packing + ended + failed))
 
 
 def _export(result: DriveResult, report: bool, scene: bool, results: dict[str, Any]) -> list[tuple[str, str]]:

@@ -16,7 +16,7 @@ from simconsole.recording.bundles.manifest import SIGNATURE, read_manifest, refu
 from simconsole.recording.bundles.pack import Sizes, Watch
 from simconsole.recording.bundles.pack import pack as pack_bundle
 from simconsole.recording.bundles.pack import unpack as unpack_bundle
-from simconsole.recording.bundles.verification import coverage, examine
+from simconsole.recording.bundles.verification import coverage, examine, inexact
 from simconsole.recording.compare import compare as compare_logs
 from simconsole.values.errors import RecordingError
 
@@ -53,9 +53,11 @@ def _replayed(folder: Path, tolerances: str | None) -> Outcome:
 
     result = replay_bundle(folder, read_tolerances(tolerances))
     covered = coverage(folder)
+    said = inexact(folder, read_manifest(folder))
     results = {
         **result._asdict(),
         "digest": result.digest.hex(),
+        "bit_exact": not said,
         "differences": plain_differences(result.differences, REPLAY),
         "vouches_for": covered.replayed if result.good and result.hashes_equal else [],
     }
@@ -74,7 +76,7 @@ def _replayed(folder: Path, tolerances: str | None) -> Outcome:
     lines = [verdict, *([differences_text(result.differences, REPLAY)] if result.differences else [])]
     lines += columns_text(result.new, "new, not in the recording")
     lines += columns_text(result.missing, "in the recording only")
-    return Outcome(0 if result.good else 1, results, "\n".join((*lines, *result.problems, *result.remarks)))
+    return Outcome(0 if result.good else 1, results, "\n".join((*lines, *result.problems, *result.remarks, *said)))
 
 
 def _counterfactual(options: Namespace) -> Outcome:

@@ -110,6 +110,14 @@ class Aids(Section, frozen=True, kw_only=True):
     hill_hold: bool | None = None
 
 
+class ControllerChoice(Section, frozen=True, kw_only=True):
+    """A controller that another package has registered (entry point `simconsole.controllers`)."""
+
+    name: Annotated[str, Meta(pattern=r"^[a-z][a-z0-9_]{0,60}$")]
+    parameters: dict[str, float] = {}
+    """What differs from its own values; each has bounds of its own."""
+
+
 class Features(Section, frozen=True, kw_only=True):
     """What the console does beside driving: who may command, and how it supervises them."""
 
@@ -119,6 +127,8 @@ class Features(Section, frozen=True, kw_only=True):
     """Whose commands drive where both could: the ROS side's or, on `outputs.can`, the ECU's (requests/commander.py)."""
     commands: Annotated[str, Meta(pattern=r"^bag:.{1,1000}$")] | None = None
     """bag:FILE or bag:FILE:/TOPIC plays recorded commands in place of a controller's, where `mode.pacing` is free."""
+    controller: ControllerChoice | None = None
+    """Called in the place of a program behind the bridge, where `mode.pacing` is lockstep."""
     autopilot: ProfileName | None = None
     """Start `simconsole autopilot` on this course, as a program of its own that only speaks rosbridge."""
     tracker: Literal["preview", "pure_pursuit", "stanley"] = "preview"

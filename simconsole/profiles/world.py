@@ -237,6 +237,20 @@ class ArenaProfile(WorldSection, frozen=True, kw_only=True, tag_field="kind", ta
         return min((*round_ones, *straight))
 
 
+class OwnWorldProfile(WorldSection, frozen=True, kw_only=True, tag_field="kind", tag="own"):
+    """A world that another package has registered (entry point `simconsole.worlds`)."""
+
+    schema: Literal[1]
+    title: str
+    name: Annotated[str, Meta(pattern=r"^[a-z][a-z0-9_]{0,60}$")]
+    parameters: dict[str, float] = {}
+    """What differs from its own values; each has bounds of its own."""
+
+    def __hash__(self) -> int:
+        """Let equal profiles be one world, which is made once."""
+        return hash((self.title, self.name, *sorted(self.parameters.items())))
+
+
 def _apart_m(x_m: float, y_m: float, a: ArenaPoint, b: ArenaPoint) -> float:
     """Return the distance of a place from a straight wall."""
     along_x, along_y = b.x_m - a.x_m, b.y_m - a.y_m
@@ -250,5 +264,5 @@ def _require(good: bool, what: str) -> None:
         raise ValueError(what)
 
 
-WorldProfile = CourseProfile | RoadsProfile | ArenaProfile
-KINDS: Final = ("course", "roads", "arena")
+WorldProfile = CourseProfile | RoadsProfile | ArenaProfile | OwnWorldProfile
+KINDS: Final = ("course", "roads", "arena", "own")

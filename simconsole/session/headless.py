@@ -29,7 +29,7 @@ from simconsole.values.errors import BridgeError, ProfileError
 from simconsole.values.latency import LatencyStatistics
 from simconsole.values.protocols import CommandSource, NobodyCommands, Output
 from simconsole.values.state_vector import Snapshot
-from simconsole.world.kinds.worlds import road_signals, route_points, shown_map
+from simconsole.world.kinds.worlds import open_world, road_signals, route_points, shown_map
 
 LOOKED_AT = 64
 """In a drive that is not paced, hops are timed in each 64th tick."""
@@ -77,14 +77,19 @@ def open_headless(
     platform of several brings its `link` to the server that they share.
 
     Raises:
-        ProfileError: lockstep without a bridge.
+        ProfileError: lockstep without a bridge, or no such controller as it names.
         RecordingError: the bag with its commands cannot be used.
         BridgeError: the bridge cannot listen, or the autopilot did not connect.
         CanError: the CAN bus cannot be opened.
         DeviceError: a device is missing.
     """
     traffic, unpushable = others or traffic_of(resolved, console, stack), CollisionEnd(console.platform)
-    parts, pace = OwnParts(own, resolved.session.mode.control_period_ticks), UnpacedPacer()
+    if link is not None and resolved.session.features.controller is not None:
+        raise ProfileError("features.controller: value given: without scenario.platforms: it drives one vehicle")
+    parts, pace = (
+        OwnParts(_with_named(own, resolved, console), resolved.session.mode.control_period_ticks),
+        UnpacedPacer(),
+    )
     if parts.controller is not None:
         link = lockstep_link(parts.controller, resolved.session, interrupt)
         ros = _RosSide(commands_over_link(link, resolved, console), (link,), counters=link.counters)
@@ -129,6 +134,18 @@ def open_headless(
         left=unpushable.ended,
         failure=lambda: parts.failure,
     )
+
+
+def _with_named(own: OwnCode, resolved: ResolvedSession, console: Console) -> OwnCode:
+    """Return `own` with the controller that the session names, unless it has one."""
+    choice = resolved.session.features.controller
+    if choice is None or own.controller is not None:
+        return own
+    from simconsole.drivers.registered import named_controller
+
+    route = None if resolved.world is None else open_world(resolved.world).route
+    period_s = resolved.session.mode.control_period_ticks / console.tick_hz
+    return own._replace(controller=named_controller(choice, route, console.platform, period_s))
 
 
 def _open_lockstep(

@@ -36,6 +36,8 @@ def check_session(session: SessionProfile, *, has_controller: bool = False) -> N
     Raises:
         ProfileError: its commander has no way in, or what it asks needs another pacing.
     """
+    if not has_controller:
+        check_controller(session)
     _check_commander(session)
     if session.mode.pacing == "realtime":
         return
@@ -43,6 +45,24 @@ def check_session(session: SessionProfile, *, has_controller: bool = False) -> N
         raise ProfileError(f"{FREE}: lockstep or realtime, where features.autopilot drives")
     if session.outputs.bridge is not None:
         _check_links(session.outputs.bridge, session.mode.pacing)
+
+
+def check_controller(session: SessionProfile) -> None:
+    """Refuse a controller by name that nobody would call, or that would not be alone.
+
+    Raises:
+        ProfileError: the drive is not in lockstep, or somebody else commands, too.
+    """
+    features = session.features
+    if features.controller is None:
+        return
+    told = f"features.controller: value {features.controller.name}"
+    if session.mode.pacing != "lockstep":
+        raise ProfileError(f"{told}: needs mode.pacing lockstep; it is {session.mode.pacing}")
+    others = {"autopilot": features.autopilot, "commands": features.commands}
+    for key, other in others.items():
+        if other is not None:
+            raise ProfileError(f"{told}: without features.{key}: one controller at a time")
 
 
 def _check_commander(session: SessionProfile) -> None:

@@ -15,6 +15,8 @@
     +-- CanError                the CAN bus, a DBC or a frame
     +-- RecordingError          a bundle or log that cannot be read
     +-- VehicleError            a vehicle of another package fails in a drive
+    +-- ControllerError         a controller of another package fails in a drive
+    +-- MetricError             a metric of another package fails on a drive
     +-- WorkerError            a consumer process or its shared memory
 
 The command line prints the message on one line and exits with `exit_code`; a traceback means a bug.
@@ -88,6 +90,14 @@ class RecordingError(SimConsoleError):
 
 class VehicleError(SimConsoleError):
     """A vehicle of another package, an FMU, fails in a drive. Names the file and the simulated time."""
+
+
+class ControllerError(SimConsoleError):
+    """A controller of another package fails in a drive. Names the controller and the tick."""
+
+
+class MetricError(SimConsoleError):
+    """A metric of another package fails on a drive, or returns what it does not promise. Names metric and figure."""
 
 
 class WorkerError(SimConsoleError):

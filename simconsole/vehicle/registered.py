@@ -1,23 +1,16 @@
 """Vehicles of other packages: found by the entry points `simconsole.vehicles`, their parameters inside bounds."""
 
 from collections.abc import Callable, Mapping
-from importlib.metadata import entry_points
 from typing import Final, NamedTuple
 
 from simconsole.profiles.vehicle import OwnProfile
 from simconsole.values.errors import ProfileError, SimConsoleError, one_line
 from simconsole.values.platform import Ground, Platform, Pose
+from simconsole.values.registered import Bounded as Bounded
+from simconsole.values.registered import bounded_values, load
 from simconsole.vehicle.contract import shape
 
 GROUP: Final = "simconsole.vehicles"
-
-
-class Bounded(NamedTuple):
-    """A parameter: what it is unless the profile says otherwise, and between which values it may be."""
-
-    default: float
-    lowest: float
-    highest: float
 
 
 class OwnSettings(NamedTuple):
@@ -42,16 +35,7 @@ def registered(kind: str) -> OwnVehicle:
     Raises:
         ProfileError: there is none, it cannot be loaded, or is no `OwnVehicle`.
     """
-    found = {one.name: one for one in entry_points(group=GROUP)}
-    if kind not in found:
-        raise ProfileError(f"vehicle: kind: value {kind}: one of {', '.join(sorted(found))}, as packages register them")
-    try:
-        vehicle = found[kind].load()
-    except Exception as error:  # whatever a stranger's module does when it is loaded
-        raise ProfileError(f"vehicle: kind: value {kind}: {found[kind].value}: {one_line(error)}") from error
-    if not isinstance(vehicle, OwnVehicle):
-        raise ProfileError(f"vehicle: kind: value {kind}: {found[kind].value}: an OwnVehicle")
-    return vehicle
+    return load(GROUP, kind, OwnVehicle, "vehicle: kind")
 
 
 def build_own(profile: OwnProfile, pose: Pose, ground: Ground, vehicle: OwnVehicle | None = None) -> Platform:
@@ -63,16 +47,7 @@ def build_own(profile: OwnProfile, pose: Pose, ground: Ground, vehicle: OwnVehic
     own = registered(profile.kind) if vehicle is None else vehicle
     values = dict(profile.parameters)
     if own.parameters is not None:
-        for name, value in values.items():
-            if name not in own.parameters:
-                known = ", ".join(own.parameters)
-                raise ProfileError(f"vehicle: parameters: {name}: one of {known}")
-            bounds = own.parameters[name]
-            if not bounds.lowest <= value <= bounds.highest:
-                raise ProfileError(
-                    f"vehicle: parameters: {name}: value {value:g}: {bounds.lowest:g} to {bounds.highest:g}"
-                )
-        values = {name: values.get(name, bounds.default) for name, bounds in own.parameters.items()}
+        values = bounded_values(own.parameters, values, "vehicle: parameters")
     try:
         platform = own.build(OwnSettings(profile, values, pose, ground))
         wrong = next(shape(platform), None)

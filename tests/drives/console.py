@@ -24,8 +24,13 @@ def environment(**changes: str) -> dict[str, str]:
 
 def simconsole(*arguments: object, **changes: str) -> "subprocess.CompletedProcess[str]":
     """Run one command to its end, with pipes for its output."""
+    return patient(PATIENCE_S, *arguments, **changes)
+
+
+def patient(patience_s: float, *arguments: object, **changes: str) -> "subprocess.CompletedProcess[str]":
+    """The same of a command that has much to do."""
     return subprocess.run(
-        words(*arguments), capture_output=True, text=True, timeout=PATIENCE_S, env=environment(**changes), check=False
+        words(*arguments), capture_output=True, text=True, timeout=patience_s, env=environment(**changes), check=False
     )
 
 

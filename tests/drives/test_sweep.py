@@ -4,10 +4,10 @@ from pathlib import Path
 
 from simconsole.evaluation.sweep.journal import JOURNAL
 from simconsole.evaluation.sweep.results import RESULTS
-from tests.drives.console import Running, results, simconsole
+from tests.drives.console import Running, patient, results
 from tests.evaluation.sweep.clusters import cluster, kill, pool_workers_of
 from tests.evaluation.sweep.plans import write_plan
-from tests.patience import wait_until
+from tests.patience import PATIENCE_S, wait_until
 from tests.samples import Sample
 
 
@@ -24,7 +24,8 @@ def plan_of(folder: Path, sample: Sample) -> Path:
 
 def test_every_engine_writes_the_same_file_and_a_killed_sweep_goes_on(tmp_path: Path, sample: Sample) -> None:
     plan, count = plan_of(tmp_path, sample), sample.of(60, 1000)
-    here = simconsole("sweep", plan, "--jobs", 2, "--out", tmp_path / "here", "--json")
+    patience_s = sample.of(1, 10) * PATIENCE_S
+    here = patient(patience_s, "sweep", plan, "--jobs", 2, "--out", tmp_path / "here", "--json")
     assert here.returncode == 0, here.stderr
     assert results(here)["outcomes"] == {"driven": count}
     whole = (tmp_path / "here" / RESULTS).read_bytes()
@@ -32,13 +33,14 @@ def test_every_engine_writes_the_same_file_and_a_killed_sweep_goes_on(tmp_path: 
         folder = tmp_path / f"dask-{workers}"
         folder.mkdir()
         with cluster(folder, workers) as there:
-            done = simconsole("sweep", plan, "--engine", "dask", "--scheduler", there.url, "--out", folder)
+            words = ("sweep", plan, "--engine", "dask", "--scheduler", there.url, "--out", folder)
+            done = patient(patience_s, *words)
             assert done.returncode == 0, done.stderr
         assert (folder / RESULTS).read_bytes() == whole
-    assert (killed_and_gone_on(tmp_path, plan, count) / RESULTS).read_bytes() == whole
+    assert (killed_and_gone_on(tmp_path, plan, count, patience_s) / RESULTS).read_bytes() == whole
 
 
-def killed_and_gone_on(tmp_path: Path, plan: Path, count: int) -> Path:
+def killed_and_gone_on(tmp_path: Path, plan: Path, count: int, patience_s: float) -> Path:
     """Kill a sweep after a third of its drives, and start it again; its folder."""
     folder = tmp_path / "killed"
     journal = folder / JOURNAL
@@ -50,7 +52,7 @@ def killed_and_gone_on(tmp_path: Path, plan: Path, count: int) -> Path:
     assert len(lanes) == 2
     wait_until(lambda: not any(Path(f"/proc/{lane}").exists() for lane in lanes), "the lanes' end")
     assert not (folder / RESULTS).exists()
-    assert simconsole("sweep", plan, "--jobs", 2, "--out", folder).returncode == 0
+    assert patient(patience_s, "sweep", plan, "--jobs", 2, "--out", folder).returncode == 0
     rows = journal.read_bytes().splitlines()[1:]
     assert len(rows) == len({row.partition(b",")[0] for row in rows}) == count, "no double rows, none missing"
     return folder

@@ -1,15 +1,20 @@
 """The contract of vehicles, held by all that are shipped; what breaks it is named."""
 
+from pathlib import Path
+from typing import Literal
+
 import numpy as np
 import pytest
 
 from simconsole.profiles.files.vehicle_files import load_vehicle
+from simconsole.values.host.jit import compiled
 from simconsole.values.kernels import Row
 from simconsole.values.layout import read, write
 from simconsole.values.platform import Ground, Platform, Pose
 from simconsole.values.state_vector import LAYOUT
 from simconsole.vehicle.contract import problems
 from simconsole.vehicle.platforms import build
+from tests.vehicle.fmu.building import build as build_unit
 
 LEVEL = Ground(friction=1.0, slope_x=0.0, slope_y=0.0)
 
@@ -18,9 +23,16 @@ def shipped(name: str) -> Platform:
     return build(load_vehicle(name), Pose(0.0, 0.0, 0.0), LEVEL)
 
 
-@pytest.mark.parametrize("name", ["ball", "turtlebot3_burger"])
+@pytest.mark.parametrize("name", ["ball", "turtlebot3_burger", "hatchback", "light_van", "commonroad_bmw320i"])
 def test_what_is_shipped_keeps_it(name: str) -> None:
-    assert problems(shipped(name)) == []
+    vehicle = shipped(name)
+    assert problems(vehicle._replace(step=compiled(vehicle.step))) == []
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_an_fmu_keeps_it(version: Literal[2, 3], tmp_path: Path) -> None:
+    profile = load_vehicle(str(build_unit(tmp_path, version, speed_mps=0.0)))
+    assert problems(build(profile, Pose(0.0, 0.0, 0.0), LEVEL)) == []
 
 
 def test_what_breaks_it_is_named() -> None:

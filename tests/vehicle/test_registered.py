@@ -16,6 +16,7 @@ from simconsole.values.platform import Ground, Platform, Pose
 from simconsole.vehicle.platforms import build
 from simconsole.vehicle.registered import OwnVehicle, build_own, registered
 from tests.drives.console import simconsole as command
+from tests.installed import installed as register
 
 LEVEL = Ground(friction=1.0, slope_x=0.0, slope_y=0.0)
 DRIVES = """
@@ -35,11 +36,7 @@ print(drive.digest)
 
 
 def installed(folder: Path) -> None:
-    """What pip leaves beside a package of one module."""
-    about = folder / "quick-0.1.0.dist-info"
-    about.mkdir()
-    (about / "METADATA").write_text("Metadata-Version: 2.1\nName: quick\nVersion: 0.1.0\n")
-    (about / "entry_points.txt").write_text("[simconsole.vehicles]\nquick = quick:VEHICLE\nwrong = quick:PARAMETERS\n")
+    register(folder, "simconsole.vehicles", quick="VEHICLE", wrong="PARAMETERS")
 
 
 @pytest.mark.parametrize("compiled", [False, True], ids=["plain", "compiled"])

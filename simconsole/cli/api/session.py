@@ -146,7 +146,7 @@ class Session:
         longest_s = duration_s or session.scenario.duration_s or LONGEST_S
         session = override(session, scenario={"duration_s": longest_s})
         if controller is not None:
-            own: dict[str, object] = {"autopilot": None, "commands": None, "commander": "ros"}
+            own: dict[str, object] = {"autopilot": None, "commands": None, "controller": None, "commander": "ros"}
             session = override(session, features=own, mode={"pacing": "lockstep"})
         return msgspec.structs.replace(self.resolved, session=session)
 

@@ -1,8 +1,11 @@
 """The commands for cockpits, worlds, bridges, buses and machines."""
 
-from typing import Any
+from typing import Any, Final
 
 from simconsole.cli.arguments.subparser import command
+
+NEW_KINDS: Final = ("controller", "driver", "scenario", "vehicle", "platform", "metric", "world", "place", "session")
+"""Kinds of templates; driver, platform, metric and place are packages that register themselves."""
 
 
 def tools(commands: Any) -> None:
@@ -11,7 +14,7 @@ def tools(commands: Any) -> None:
     _world(commands)
     _bridge(commands)
     new = command(commands, "new", "new.new_command:new", "a template that runs at once, with a test beside it")
-    new.add_argument("kind", choices=("controller", "scenario", "vehicle", "platform", "world", "session"))
+    new.add_argument("kind", choices=NEW_KINDS)
     new.add_argument("name", metavar="NAME", help="lower-case letters, digits and _")
     new.add_argument("--out", metavar="DIR", default=".", help="where (default: here)")
     command(commands, "doctor", "doctor:doctor", "what this machine has and lacks")

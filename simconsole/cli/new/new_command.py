@@ -6,13 +6,19 @@ from pathlib import Path
 from string import Template
 from typing import Final
 
-from simconsole.cli.new import platform_texts, texts
+from simconsole.cli.new import driver_texts, metric_texts, platform_texts, texts, world_texts
 from simconsole.cli.outcome import Outcome
 from simconsole.profiles.files.loader import find
 from simconsole.values.errors import ProfileError
 
 KINDS: Final = {
     "controller": {"$name.py": texts.CONTROLLER, "test_$name.py": texts.TEST_CONTROLLER},
+    "driver": {
+        "pyproject.toml": driver_texts.PROJECT,
+        "$name.py": driver_texts.DRIVER,
+        "$name.yaml": driver_texts.SESSION,
+        "test_$name.py": driver_texts.TEST,
+    },
     "scenario": {"$name.yaml": texts.SCENARIO, "test_$name.py": texts.TEST_SCENARIO},
     "vehicle": {"test_$name.py": texts.TEST_VEHICLE},
     "platform": {
@@ -21,7 +27,18 @@ KINDS: Final = {
         "$name.yaml": platform_texts.PROFILE,
         "test_$name.py": platform_texts.TEST,
     },
+    "metric": {
+        "pyproject.toml": metric_texts.PROJECT,
+        "$name.py": metric_texts.METRIC,
+        "test_$name.py": metric_texts.TEST,
+    },
     "world": {"$name.plan.yaml": texts.WORLD_PLAN, "test_$name.py": texts.TEST_WORLD},
+    "place": {
+        "pyproject.toml": world_texts.PROJECT,
+        "$name.py": world_texts.WORLD,
+        "$name.yaml": world_texts.PROFILE,
+        "test_$name.py": world_texts.TEST,
+    },
     "session": {"$name.yaml": texts.SESSION, "test_$name.py": texts.TEST_SESSION},
 }
 """Files of each kind; a vehicle's profile, a world and a golden are made from what is there."""

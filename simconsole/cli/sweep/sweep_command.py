@@ -42,13 +42,20 @@ def sweep(options: Namespace) -> Outcome:
                 progress.done(f"{len(plan.tasks)} drives", len(journal.results) / len(plan.tasks))
         results = journal.results
     write_results(folder / RESULTS, plan, results)
-    again = f"simconsole sweep {shlex.quote(str(options.plan))} --drive INDEX"
-    write_sweep_page(folder / PAGE, plan, results, again)
+    write_sweep_page(folder / PAGE, plan, results, lambda index: _again(plan.tasks[index], options.plan, folder))
     outcomes = Counter(result.outcome for result in results.values())
     good = all(outcome in GOOD for outcome in outcomes)
     plain = {"folder": str(folder), "drives": len(results), "outcomes": dict(outcomes)}
     rows = [("folder", str(folder)), *((outcome, str(count)) for outcome, count in sorted(outcomes.items()))]
     return Outcome(0 if good else 1, plain, table(rows))
+
+
+def _again(task: Task, plan: str, folder: Path) -> str:
+    """Return the command that drives a task again into a bundle beside the results, and replays that where it can."""
+    out = shlex.quote(str((folder / f"drive-{task.index}").absolute()))
+    command = f"simconsole sweep {shlex.quote(str(Path(plan).absolute()))} --drive {task.index} --out {out}"
+    of_many = task.scenario is not None and task.scenario.manoeuvre is not None
+    return command if of_many else f"{command}; simconsole replay {out}"
 
 
 def _driven(tasks: Sequence[Task], options: Namespace) -> Generator[TaskResult, None, None]:

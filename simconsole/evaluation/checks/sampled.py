@@ -13,7 +13,13 @@ from simconsole.values.kernels import Row
 
 
 class Accepting:
-    """Writes the drive as the new golden, which replaces the old one at the end."""
+    """Writes the drive as the new golden, which replaces the old one at the end.
+
+    Attributes:
+        exact: true: what is driven is what is accepted.
+    """
+
+    exact = True
 
     def __init__(
         self, path: Path, tick_hz: int, columns: tuple[str, ...], tolerances: Sequence[Tolerance] = ()
@@ -48,13 +54,18 @@ class Accepting:
 
 
 class Comparing:
-    """Compares the drive with its golden."""
+    """Compares the drive with its golden.
+
+    Attributes:
+        exact: whether the finished drive is the golden's to the bit.
+    """
 
     def __init__(
         self, path: Path, tick_hz: int, columns: tuple[str, ...], tolerances: Sequence[Tolerance] = ()
     ) -> None:
         self._path, self._columns, self._tolerances, self._tick_hz = path, columns, tolerances, tick_hz
         self._file: TextIO | None = None
+        self.exact = False
 
     def __enter__(self) -> Self:
         """Open the golden, if there is one.
@@ -88,6 +99,7 @@ class Comparing:
             return [f"{self._path}: tick_hz {self._tick_hz}, accepted {self._golden.tick_hz}"]
         difference = self._comparison.first_difference()
         if (self._golden.hash, self._golden.columns) == (digest, self._columns):
+            self.exact = True
             return []
         if difference is None:
             return self._unseen(digest)

@@ -43,6 +43,8 @@ class Verdict(NamedTuple):
     title: str = ""
     result: Result | None = None  # of a manoeuvre
     limits: tuple[Limit, ...] = ()
+    exact: bool = True
+    """Whether it is its golden to the bit; false where it is within tolerances, or differs."""
 
 
 def check_scenario(name_or_path: str, update_golden: bool = False) -> Verdict:
@@ -82,6 +84,7 @@ def check_scenario(name_or_path: str, update_golden: bool = False) -> Verdict:
             drive_kept = drive_of(watch.kept.vectors, watch.columns, resolved.session.mode.tick_hz)
             problems += judge_metrics(scenario.metrics, dict(numbers_of(drive_kept, resolved)))
         problems += watch.samples.end(digest)
+        exact = watch.samples.exact
     return Verdict(
         scenario=path.stem,
         passed=not problems,
@@ -89,6 +92,7 @@ def check_scenario(name_or_path: str, update_golden: bool = False) -> Verdict:
         digest=digest,
         problems=problems,
         title=scenario.title,
+        exact=exact,
     )
 
 

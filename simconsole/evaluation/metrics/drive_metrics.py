@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from simconsole.evaluation.metrics.advice_metrics import advice_metrics
 from simconsole.evaluation.metrics.encounters import encounters
 from simconsole.evaluation.metrics.fault_metrics import plain_spans
+from simconsole.evaluation.metrics.registered import Driven, own_metrics
 from simconsole.evaluation.metrics.rule_metrics import plain_events
 from simconsole.evaluation.metrics.table import Drive
 from simconsole.evaluation.metrics.takeovers import takeovers
@@ -108,6 +109,9 @@ def metrics(
         way: The drive's track, where the caller has it.
         faults: The names of the faults of its scenario, in their order.
         changes: The drive's mode changes, where the caller has them.
+
+    Raises:
+        ProfileError, MetricError: a metric of another package cannot be loaded, fails, or breaks its promise.
     """
     way = track(drive, route) if way is None else way
     duration = drive.ticks / drive.tick_hz
@@ -141,6 +145,7 @@ def metrics(
         "road": encounters(drive, way),
         "speed_advice": advice_metrics(drive, way),
         "force_feedback": force_feedback(drive),
+        "own": own_metrics(Driven(drive, way, route)),
     }
 
 

@@ -128,6 +128,7 @@ def page(
         *(("<h2>Speed advice</h2>", _advice_table(found["speed_advice"])) if found["speed_advice"] else ()),
         *(("<h2>Rules of the road</h2>", _rules_table(found)) if found["rules"] else ()),
         *(("<h2>Faults</h2>", _faults_table(found)) if found["faults"] else ()),
+        *(("<h2>Own metrics</h2>", _own_table(found["own"])) if found.get("own") else ()),
         *(("<h2>Force feedback</h2>", _wheel_table(found["force_feedback"])) if found["force_feedback"] else ()),
         *(("<h2>Latency</h2>", _latency_table(latency_us)) if latency_us else ()),
         *(("<h2>Drive</h2>", _extra_table(extra)) if extra else ()),
@@ -258,6 +259,17 @@ def _wheel_table(wheel: Mapping[str, Any]) -> str:
         )
     lines = (f"<tr><th>{name}</th><td>{value}</td></tr>" for name, value in rows)
     return "\n".join(("<table>", *lines, "</table>"))
+
+
+def _own_table(own: Mapping[str, Mapping[str, float | None]]) -> str:
+    """Return the figures of other packages' metrics, as they are called."""
+    lines = (
+        f"<tr><th>{escape(name)}</th><td>{escape(figure)}</td>"
+        f"<td class=n>{'-' if value is None else f'{value:.6g}'}</td></tr>"
+        for name, figures in own.items()
+        for figure, value in figures.items()
+    )
+    return "\n".join(("<table><tr><th>metric</th><th>figure</th><th class=n>value</th></tr>", *lines, "</table>"))
 
 
 def _latency_table(latency_us: Mapping[str, Mapping[str, float]]) -> str:

@@ -16,13 +16,14 @@ PLOTS: Final = 12
 """Columns of a scenario that are plotted, those first that differ first; the table names all."""
 
 
-def write_review(path: Path, reviews: Sequence[Review], equal: Sequence[str]) -> None:
+def write_review(path: Path, reviews: Sequence[Review], equal: Sequence[str], alike: Sequence[str] = ()) -> None:
     """Write the page.
 
     Args:
         path: the HTML file.
         reviews: of the scenarios that differ.
-        equal: names of those that do not.
+        equal: names of those that are equal to the bit.
+        alike: names of those that are within their tolerances.
 
     Raises:
         RecordingError: the file cannot be written.
@@ -33,6 +34,7 @@ def write_review(path: Path, reviews: Sequence[Review], equal: Sequence[str]) ->
         '<p class="note">Accepted is what stands in the goldens, driven is what this version drives. Nothing is '
         "changed by this page; <code>simconsole check --update-golden</code> accepts what is driven.</p>",
         f"<p>Equal to the bit: {same}.</p>",
+        *((f"<p>Not equal, within their tolerances: {escape(', '.join(alike))}.</p>",) if alike else ()),
         *map(_chapter, reviews),
     ]
     try:

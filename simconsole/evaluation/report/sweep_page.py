@@ -1,6 +1,6 @@
 """The page of a sweep: how it ended, how each metric is distributed, and which drives are the worst cases."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from html import escape
 from pathlib import Path
 from typing import Final, NamedTuple
@@ -53,14 +53,14 @@ def distributions(results: Mapping[int, TaskResult]) -> list[Distribution]:
     return found
 
 
-def write_sweep_page(path: Path, plan: Plan, results: Mapping[int, TaskResult], again: str) -> None:
+def write_sweep_page(path: Path, plan: Plan, results: Mapping[int, TaskResult], again: Callable[[int], str]) -> None:
     """Write the page.
 
     Args:
         path: the HTML file.
         plan: what was driven.
         results: by index.
-        again: the command that drives one of them again into a bundle, INDEX in the place of its number.
+        again: returns the command that drives one of them again into a bundle and replays that, by its index.
 
     Raises:
         RecordingError: the file cannot be written.
@@ -69,17 +69,19 @@ def write_sweep_page(path: Path, plan: Plan, results: Mapping[int, TaskResult], 
     lost = [results[index] for index in sorted(results) if results[index].outcome not in GOOD]
     parts = [
         f"<h1>{escape(plan.title)}</h1>",
-        f'<p class="note">{len(results)} of {len(plan.tasks)} drives; varied: {escape(", ".join(plan.keys)) or "-"}. '
-        f"One of them again, into a bundle: <code>{escape(again)}</code></p>",
+        f'<p class="note">{len(results)} of {len(plan.tasks)} drives; '
+        f"varied: {escape(', '.join(plan.keys)) or '-'}.</p>",
         _outcomes(results),
     ]
     if lost:
-        parts += ["<h2>Drives that did not end well</h2>", _lost(plan, lost)]
+        parts += ["<h2>Drives that did not end well</h2>", _lost(plan, lost, again)]
     if found:
         parts += [
             "<h2>Distributions</h2>",
             f"<figure>{panels_svg('sweep', tuple(map(_panel, found[:PLOTS])))}</figure>",
             _table(plan, found),
+            "<h2>Least and most again</h2>",
+            _commands(plan, found, again),
         ]
     try:
         write_atomically(path, html_page(plan.title, parts))
@@ -93,14 +95,14 @@ def _outcomes(results: Mapping[int, TaskResult]) -> str:
     return f'<ul class="tiles">{"".join(tiles)}</ul>'
 
 
-def _lost(plan: Plan, lost: Sequence[TaskResult]) -> str:
+def _lost(plan: Plan, lost: Sequence[TaskResult], again: Callable[[int], str]) -> str:
     rows = [
         f"<tr><td class=n>{one.index}</td><td>{escape(_case(plan.tasks[one.index]))}</td><td>{one.outcome}</td>"
-        f"<td>{escape(one.detail)}</td></tr>"
+        f"<td>{escape(one.detail)}</td><td><code>{escape(again(one.index))}</code></td></tr>"
         for one in lost[:LOST]
     ]
     more = len(lost) - LOST
-    head = "<table><tr><th class=n>drive</th><th>of</th><th>ended</th><th>why</th></tr>"
+    head = "<table><tr><th class=n>drive</th><th>of</th><th>ended</th><th>why</th><th>again</th></tr>"
     return "\n".join((head, *rows, "</table>", *((f"<p>and {more} more</p>",) if more > 0 else ())))
 
 
@@ -122,6 +124,21 @@ def _table(plan: Plan, found: Sequence[Distribution]) -> str:
             f"{_which(most)}</tr>"
         )
     return "\n".join((f"<table><tr><th>metric</th>{heads}</tr>", *rows, "</table>"))
+
+
+def _commands(plan: Plan, found: Sequence[Distribution], again: Callable[[int], str]) -> str:
+    """Return the drives that are the least or the most of a metric, each with the command that drives it again."""
+    rows: dict[int, list[str]] = {}
+    for one in found:
+        rows.setdefault(one.smallest, []).append(f"least {one.name}")
+        rows.setdefault(one.largest, []).append(f"most {one.name}")
+    lines = (
+        f"<tr><td class=n>{index}</td><td>{escape(_case(plan.tasks[index]))}</td><td>{escape(', '.join(rows[index]))}"
+        f"</td><td><code>{escape(again(index))}</code></td></tr>"
+        for index in sorted(rows)
+    )
+    head = "<table><tr><th class=n>drive</th><th>of</th><th>is</th><th>again, into a bundle, and replayed</th></tr>"
+    return "\n".join((head, *lines, "</table>"))
 
 
 def _which(task: Task) -> str:

@@ -10,6 +10,8 @@ from typing import NamedTuple
 import msgspec
 import numpy as np
 
+from simconsole.evaluation.metrics.registered import GROUP as METRICS
+from simconsole.evaluation.sweep.scenario_values import of_scenario, with_scenario_values
 from simconsole.evaluation.sweep.task import Task, to_bytes
 from simconsole.profiles.files.loader import MAX_BYTES, read_text_of
 from simconsole.profiles.scenario import ScenarioProfile
@@ -28,6 +30,7 @@ from simconsole.session.resolution import (
 )
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import ProfileError
+from simconsole.values.registered import identities
 from simconsole.values.version import __version__
 
 LONGEST_S = 3600.0
@@ -73,12 +76,13 @@ def load_plan(path: Path) -> Plan:
     for source in _sources(profile, path):
         for combination in product(*axes):
             values = dict(chain.from_iterable(part.items() for part in combination))
+            own, others = of_scenario(values)
             task = Task(
                 index=len(tasks),
                 source=source.name,
                 values=values,
-                resolved=_changed(source.resolved, values, str(path)),
-                scenario=source.scenario,
+                resolved=_changed(source.resolved, others, str(path)),
+                scenario=with_scenario_values(source.scenario, own, str(path)),
                 timeout_s=profile.timeout_s,
             )
             tasks.append(task)
@@ -126,7 +130,7 @@ def _changed(resolved: ResolvedSession, values: dict[str, Value], origin: str) -
 
 
 def _digest(tasks: Sequence[Task]) -> str:
-    found = hashlib.sha256(__version__.encode())
+    found = hashlib.sha256("\n".join((__version__, *identities(METRICS))).encode())
     for task in tasks:
         found.update(to_bytes(task))
     return found.hexdigest()

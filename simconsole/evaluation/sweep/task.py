@@ -12,11 +12,13 @@ from simconsole.evaluation.checks.memory_recorder import MemoryRecorder
 from simconsole.evaluation.checks.scenario_check import Bound, drive_scenario
 from simconsole.evaluation.checks.whole_drive import judge_metrics, judge_modes, modes_of, numbers_of
 from simconsole.evaluation.metrics.table import Drive, drive_of, recorded_drive
+from simconsole.evaluation.sweep.kept import write_drive
 from simconsole.profiles.scenario import ScenarioProfile
 from simconsole.profiles.sweep import Value
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.provenance import Given
 from simconsole.session import lifecycle
+from simconsole.session.scripted.opening import as_driven
 from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import ProfileError, SimConsoleError, one_line
@@ -73,25 +75,38 @@ class TaskResult(msgspec.Struct, frozen=True, kw_only=True):
 def drive_task(task: Task) -> TaskResult:
     """Drive a task in this process, whose main thread this is; its bundle is not kept."""
     with tempfile.TemporaryDirectory(prefix="simconsole-") as folder:
-        return drive_into(task, Path(folder) / "bundle")
+        return _driven(task, Path(folder) / "bundle", kept=False)
 
 
 def drive_into(task: Task, folder: Path) -> TaskResult:
-    """Drive a task; a session's bundle is written to `folder`, a scenario has none."""
+    """Drive a task in this process into the new bundle `folder`; a manoeuvre, which is many drives, has none."""
+    return _driven(task, folder, kept=True)
+
+
+def _driven(task: Task, folder: Path, kept: bool) -> TaskResult:
     try:
-        return _session(task, folder) if task.scenario is None else _scenario(task, task.scenario)
+        if task.scenario is None:
+            return _session(task, folder)
+        return _scenario(task, task.scenario, folder if kept else None)
     except (SimConsoleError, OSError) as error:
         return TaskResult(index=task.index, outcome="refused", detail=one_line(error))
 
 
 def _session(task: Task, folder: Path) -> TaskResult:
-    result = lifecycle.drive(task.resolved, folder, given=Given(trial=f"{task.source} {task.index}").checked())
+    result = lifecycle.drive(task.resolved, folder, given=Given(trial=trial_of(task)).checked())
     if result.interrupted:
         raise KeyboardInterrupt
+    if result.failure is not None:
+        raise result.failure
     if result.recording_failure is not None:
         return TaskResult(index=task.index, outcome="refused", detail=result.recording_failure)
     found = dict(numbers_of(_read(folder), task.resolved))
     return TaskResult(index=task.index, outcome="driven", ticks=result.ticks, digest=result.digest, metrics=found)
+
+
+def trial_of(task: Task) -> str:
+    """Return what a bundle says of which drive it is."""
+    return f"{task.source} {task.index}"
 
 
 def _read(folder: Path) -> Drive:
@@ -103,7 +118,8 @@ def _read(folder: Path) -> Drive:
     return drive_of(np.concatenate(list(drive.read(names))), names, drive.tick_hz, drive.first_tick)
 
 
-def _scenario(task: Task, scenario: ScenarioProfile) -> TaskResult:
+def _scenario(task: Task, scenario: ScenarioProfile, folder: Path | None) -> TaskResult:
+    """Drive a scenario and judge it; its drive is kept in `folder`, where there is one."""
     if scenario.manoeuvre is not None:
         return _manoeuvre(task, scenario)
     consoles: list[Console] = []
@@ -115,6 +131,9 @@ def _scenario(task: Task, scenario: ScenarioProfile) -> TaskResult:
     problems: list[str] = []
     recorder = drive_scenario(scenario, recorder_of, task.resolved, problems.append)
     console = consoles[0]
+    if folder is not None:
+        driven = as_driven(scenario, task.resolved)
+        write_drive(folder, driven, console, recorder.vectors, trial_of(task))
     bounds = [Bound(check, console.columns, console.tick_hz, task.source) for check in scenario.checks]
     for bound in bounds:
         for tick, vector in enumerate(recorder.vectors, start=1):

@@ -96,7 +96,14 @@ def examine(folder: Path, signer: Path | None = None) -> Examination:
         remarks.append(
             f"{folder / MANIFEST}: schema 1, which does not vouch for itself: changes in its own figures go unnoticed"
         )
-    return Examination(problems, remarks)
+    return Examination(problems, [*remarks, *inexact(folder, manifest)])
+
+
+def inexact(folder: Path, manifest: Manifest) -> list[str]:
+    """Return that nobody can say whether a drive is the same to the bit elsewhere, one line where that is so."""
+    if manifest.summary.get("bit_exact", True):
+        return []
+    return [f"{folder}: not bit-exact: its vehicle is foreign machine code; on another machine hashes may differ"]
 
 
 def platform_problems(folder: Path, manifest: Manifest) -> Iterator[str]:

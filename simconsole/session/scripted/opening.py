@@ -17,6 +17,7 @@ from simconsole.processes.lifetimes import Interrupt
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.scenario import ScenarioProfile
 from simconsole.session.headless import open_headless
+from simconsole.session.preconditions import check_controller
 from simconsole.session.recorder import NoLog
 from simconsole.session.resolution import headless
 from simconsole.session.scripted.actors import ScriptedActors
@@ -25,7 +26,7 @@ from simconsole.session.traffic_source import TrafficSource, ego_box
 from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.tick.loop import Components, Recorder
-from simconsole.values.errors import ProfileError
+from simconsole.values.errors import ProfileError, one_line
 from simconsole.values.protocols import CommandSource, NobodyCommands, Output
 from simconsole.values.state_vector import Snapshot
 from simconsole.world.kinds.worlds import open_world
@@ -64,14 +65,19 @@ def open_scenario(
     def finished(snapshot: Snapshot) -> bool:
         return opened.left() or opened.finished(snapshot) or script.stands(snapshot)
 
-    return OpenedScenario(components, finished, script.problem)
+    def problem() -> str | None:
+        failure = opened.failure()
+        return script.problem() if failure is None else one_line(failure)
+
+    return OpenedScenario(components, finished, problem)
 
 
 def as_driven(scenario: ScenarioProfile, resolved: ResolvedSession) -> ResolvedSession:
     """Return the scenario's session as it is opened: headless, and with nobody where its script drives.
 
     Raises:
-        ProfileError: it has both a script and another driver, both traffic and actors, or several platforms.
+        ProfileError: it has both a script and another driver, both traffic and actors, several platforms, or a
+            controller by name that is not in lockstep.
     """
     check_alone(scenario, resolved)
     session = headless(resolved.session)
@@ -84,6 +90,7 @@ def as_driven(scenario: ScenarioProfile, resolved: ResolvedSession) -> ResolvedS
         raise ProfileError(f"{scenario.title}: actors: without session.environment.traffic: one of the two")
     if scenario.remote and session.mode.pacing == "lockstep":
         raise ProfileError(f"{scenario.title}: remote: without a session in lockstep: one controller at a time")
+    check_controller(session)
     check_messages(scenario.messages, bool(scenario.remote) or session.mode.pacing == "lockstep", scenario.title)
     return msgspec.structs.replace(resolved, session=session)
 

@@ -4,12 +4,13 @@ from collections.abc import Callable
 from functools import lru_cache, partial
 
 from simconsole.profiles.files.world_files import read_map
-from simconsole.profiles.world import ArenaProfile, CourseProfile, RoadsProfile, WorldProfile
+from simconsole.profiles.world import ArenaProfile, CourseProfile, OwnWorldProfile, RoadsProfile, WorldProfile
 from simconsole.world.arena.arena_world import ArenaWorld
 from simconsole.world.course import Course
 from simconsole.world.course_relief import course_field
 from simconsole.world.drawing import draw
 from simconsole.world.earth import earth_of
+from simconsole.world.registered import make_own
 from simconsole.world.roads.road_map import RoadMap
 from simconsole.world.roads.road_world import road_world, roads_of
 from simconsole.world.roads.running import RunningNow
@@ -23,7 +24,8 @@ def open_world(profile: WorldProfile) -> World:
     """Return the world of a profile.
 
     Raises:
-        ProfileError: a file of its map cannot be read, or no route leads over it as its profile says.
+        ProfileError: a file of its map cannot be read, or no route leads over it as its profile says, or no
+            package has registered such a world or it breaks the contract.
     """
     if isinstance(profile, CourseProfile):
         course = Course(profile)
@@ -31,6 +33,8 @@ def open_world(profile: WorldProfile) -> World:
         return World(profile.title, course, partial(draw, course), raise_ground)
     if isinstance(profile, ArenaProfile):
         return ArenaWorld(profile)
+    if isinstance(profile, OwnWorldProfile):
+        return make_own(profile)
     return road_world(profile, open_map(profile))
 
 

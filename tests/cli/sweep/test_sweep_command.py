@@ -1,9 +1,15 @@
+import re
+import shlex
+from html import unescape
 from pathlib import Path
+
+import pyarrow.parquet
+import yaml
 
 from simconsole.evaluation.sweep.results import RESULTS
 from simconsole.recording.bundles.bundle import open_bundle
 from tests.drives.console import complaint, results, simconsole
-from tests.evaluation.sweep.plans import write_plan
+from tests.evaluation.sweep.plans import SCRIPT, SESSION, write_plan
 
 GRIP = {"environment.friction": [0.3, 1.0]}
 
@@ -19,6 +25,33 @@ def test_a_worst_case_is_driven_again_into_a_bundle_that_replays(tmp_path: Path)
     assert results(again)["digest"] == open_bundle(tmp_path / "drive").manifest.digest
     assert results(again)["digest"] in (tmp_path / "sweep" / "sweep.jsonl").read_text()
     assert simconsole("replay", tmp_path / "drive").returncode == 0
+
+
+def test_the_commands_of_the_page_drive_what_they_name_and_replay_it(tmp_path: Path) -> None:
+    """A session that is driven, and a scenario that fails: the bundles of both have the digests of the sweep."""
+    scenario = {
+        "schema": 1,
+        "title": "too fast",
+        "duration_s": 3,
+        "session": {**SESSION, "devices": {"driver": "none"}},
+        "script": SCRIPT,
+        "checks": [{"column": "vehicle.vx_mps", "min": 0.0, "max": 0.1}],
+    }
+    (tmp_path / "scenario.yaml").write_text(yaml.safe_dump(scenario))
+    plan = write_plan(tmp_path, scenarios=["scenario.yaml"], duration_s=4.0)
+    swept = simconsole("sweep", plan, "--jobs", 1, "--out", tmp_path / "sweep", "--json")
+    assert results(swept)["outcomes"] == {"driven": 1, "failed": 1}
+    page = (tmp_path / "sweep" / "sweep.html").read_text()
+    commands = set(re.findall("<code>(.*?)</code>", page))
+    assert len(commands) == 2
+    digests = pyarrow.parquet.read_table(tmp_path / "sweep" / RESULTS)["digest"].to_pylist()
+    for command in sorted(unescape(command) for command in commands):
+        drive, replay = (shlex.split(part)[1:] for part in command.split("; "))
+        again = simconsole(*drive, "--json")
+        index = int(drive[drive.index("--drive") + 1])
+        assert again.returncode == index, again.stderr
+        assert results(again)["digest"] == digests[index] == open_bundle(Path(replay[-1])).manifest.digest
+        assert simconsole(*replay).returncode == 0
 
 
 def test_a_drive_that_cannot_be_driven_is_told_and_is_code_1(tmp_path: Path) -> None:

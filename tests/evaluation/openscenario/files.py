@@ -1,4 +1,4 @@
-"""OpenSCENARIO files as scenariogeneration writes them: twenty with what is understood, twenty with what is not."""
+"""OpenSCENARIO files as scenariogeneration writes them: what is understood, and twenty with what is not."""
 
 from collections.abc import Callable
 from functools import cache
@@ -170,6 +170,14 @@ UNDERSTOOD: Final[dict[str, Callable[[], bytes]]] = {
     "time to collision": lambda: written(brakes(), by(xosc.TimeToCollisionCondition(6, LESS, entity="Lead"))),
     "a later act": lambda: written(brakes(), by(xosc.SpeedCondition(5, MORE)), act_trigger=at_s(5)),
     "a condition and a time": lambda: written(brakes(), time_and_more()),
+    "truck": lambda: written(brakes(), other=car(xosc.VehicleCategory.truck)),
+    "a cartesian distance": lambda: written(brakes(), by(distance())).replace(
+        b"euclidianDistance", b"cartesianDistance"
+    ),
+    "a condition that holds at once": lambda: written(
+        brakes(), xosc.EntityTrigger("condition", 0, NONE, xosc.TimeHeadwayCondition("Lead", 3, LESS), "Ego")
+    ),
+    "several events": lambda: written(brakes(), events=3),
 }
 """By what it shows: files that are imported whole."""
 
@@ -215,5 +223,5 @@ NOT_UNDERSTOOD: Final[dict[str, tuple[str, Callable[[], bytes]]]] = {
 
 @cache
 def all_files() -> tuple[bytes, ...]:
-    """Return the forty files."""
+    """Return all files."""
     return (*(make() for make in UNDERSTOOD.values()), *(make() for _, make in NOT_UNDERSTOOD.values()))

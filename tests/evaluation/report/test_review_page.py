@@ -48,12 +48,16 @@ def test_the_command_shows_who_left_and_who_kept_its_golden(tmp_path: Path) -> N
     simconsole("new", "scenario", "left", "--out", tmp_path)
     path = tmp_path / "left.yaml"
     path.write_text(path.read_text().replace("accel_mps2: 1.5", "accel_mps2: 1.6"))
+    near = tmp_path / "near.yaml"
+    near.write_text(path.read_text() + "tolerances:\n  - {columns: '*', absolute: 1000.0, relative: 1000.0}\n")
+    (tmp_path / "golden" / "near.csv").write_bytes((tmp_path / "golden" / "left.csv").read_bytes())
     golden = (tmp_path / "golden" / "left.csv").read_bytes()
     page = tmp_path / "review.html"
-    done = simconsole("check", tmp_path / "kept.yaml", path, "--review", page)
+    done = simconsole("check", tmp_path / "kept.yaml", path, near, "--review", page)
     assert done.returncode == 1
     text = page.read_text()
     assert "Equal to the bit: kept." in text
+    assert "Not equal, within their tolerances: near." in text
     assert "<h2>left: left</h2>" in text
     assert "<td>ros.accel_mps2</td>" in text
     assert (tmp_path / "golden" / "left.csv").read_bytes() == golden

@@ -25,10 +25,13 @@ def test_of_each_metric_that_varies_the_worst_cases_are_named() -> None:
 def test_the_page_names_worst_cases_losses_and_how_to_drive_one_again(tmp_path: Path) -> None:
     plan = grip(tmp_path, 5, title="<grip>")
     results = found() | {4: TaskResult(index=4, outcome="crashed", detail="twice & gone")}
-    write_sweep_page(tmp_path / "sweep.html", plan, results, "simconsole sweep plan.yaml --drive INDEX")
+    write_sweep_page(tmp_path / "sweep.html", plan, results, lambda index: f"again {index} & replay")
     page = (tmp_path / "sweep.html").read_text()
     assert "&lt;grip&gt;" in page
-    assert "simconsole sweep plan.yaml --drive INDEX" in page
+    for index, what in ((1, "least a_m"), (2, "most a_m")):
+        assert f"<td>{what}</td><td><code>again {index} &amp; replay</code></td></tr>" in page
+    assert "<td>twice &amp; gone</td><td><code>again 4 &amp; replay</code></td></tr>" in page
+    assert page.count("<code>") == 3
     assert "twice &amp; gone" in page
     assert 'title="session, environment.friction 0.6">2</td>' in page
     assert "<svg" in page

@@ -1,5 +1,6 @@
 """An FMU as a vehicle: it follows the closed form of its model, begins again, and its drive replays."""
 
+from argparse import Namespace
 from pathlib import Path
 from typing import Literal
 
@@ -7,8 +8,12 @@ import numpy as np
 import pytest
 
 import simconsole
+from simconsole.cli.recordings import replay
+from simconsole.evaluation.report.exports import REPORT, write_exports
 from simconsole.profiles.files.vehicle_files import load_vehicle
 from simconsole.profiles.vehicle import OwnProfile
+from simconsole.recording.bundles.bundle import open_bundle
+from simconsole.recording.bundles.verification import examine
 from simconsole.values.errors import ProfileError, VehicleError
 from simconsole.values.kernels import Row
 from simconsole.values.layout import read, write
@@ -99,6 +104,14 @@ def test_its_drive_replays_and_says_that_it_is_not_exact(version: Version, tmp_p
     assert drive.column("vehicle.yaw_rad")[-1] > 0.01
     assert "fmu.steps" in drive.columns or any(name.endswith("steps") for name in drive.columns)
     assert drive.replay().hashes_equal
+    assert open_bundle(drive.folder).manifest.summary["bit_exact"] is False
+    told = f"{drive.folder}: not bit-exact: its vehicle is foreign machine code; on another machine hashes may differ"
+    assert examine(drive.folder).remarks == [told]
+    again = replay(Namespace(bundle=str(drive.folder), set=None, out=None, tolerances=None))
+    assert (again.code, again.results["bit_exact"]) == (0, False)
+    assert told in again.text.splitlines()
+    write_exports(drive.folder, report=True, scene=False)
+    assert "<tr><th>bit exact</th><td>False</td></tr>" in (drive.folder / REPORT).read_text()
 
 
 @pytest.mark.parametrize(
