@@ -10,9 +10,11 @@ def tools(commands: Any) -> None:
     _devices(commands)
     _world(commands)
     _bridge(commands)
-    new = command(commands, "new", "new.command:new", "a template that runs at once, with a test beside it")
-    new.add_argument("kind", choices=("controller", "scenario", "vehicle", "platform", "world", "session"))
-    new.add_argument("name", metavar="NAME", help="lower-case letters, digits and _")
+    new = command(
+        commands, "new", "new.command:new", "a template that runs at once, with a test beside it, or an example"
+    )
+    new.add_argument("kind", choices=("controller", "scenario", "vehicle", "platform", "world", "session", "example"))
+    new.add_argument("name", metavar="NAME", help="lower-case letters, digits and _; of an example: its name")
     new.add_argument("--out", metavar="DIR", default=".", help="where (default: here)")
     command(commands, "doctor", "doctor:doctor", "what this machine has and lacks")
 
