@@ -2,12 +2,14 @@
 
 import ast
 import re
+import shlex
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
 import pytest
 
+from simconsole.cli.main import parser
 from tests.paths import ROOT
 
 PAGES = [*sorted(ROOT.glob("*.md")), *sorted((ROOT / "docs").rglob("*.md"))]
@@ -82,6 +84,26 @@ def test_every_name_stands_in_the_file_that_the_page_gives(page: Path) -> None:
 def test_every_other_name_occurs_in_the_sources(page: Path) -> None:
     named = {name for name in IDENTIFIER.findall(page.read_text()) if not name.startswith("_")} - NOT_OURS
     assert named - words_of_the_sources() == set()
+
+
+COMMANDS = [
+    (page, line)
+    for page in PAGES
+    for line in re.findall(r"^(?:\$ |    )((?:yes '' \| )?simconsole [a-z].*)$", page.read_text(), re.MULTILINE)
+]
+
+
+@pytest.mark.parametrize(("page", "line"), COMMANDS, ids=lambda part: part if isinstance(part, str) else part.stem)
+def test_the_command_line_understands_every_command(page: Path, line: str) -> None:
+    """What a page shows is a command with its options; tests/test_readme.py and others run what can be run anywhere."""
+    words = shlex.split(line.partition("simconsole ")[2], comments=True)
+    words = [word for word in words if word != "&"]
+    parser().parse_args(words)
+
+
+def test_commands_of_many_pages_are_found() -> None:
+    assert len(COMMANDS) > 40
+    assert len({page for page, _ in COMMANDS}) > 10
 
 
 def test_tick_page_names_a_place_for_every_step() -> None:
