@@ -2,18 +2,22 @@
 
 import ast
 import re
+import shlex
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
 import pytest
 
+from simconsole.cli.main import parser
 from tests.paths import ROOT
 
 PAGES = [*sorted(ROOT.glob("*.md")), *sorted((ROOT / "docs").rglob("*.md"))]
 NAME_IN_FILE = re.compile(r"`([\w.]+)`\s+in\s+`([\w/]+\.py)`")
 PATH = re.compile(r"`([\w./-]+\.(?:py|yaml|md|txt|toml))`|`([\w./-]+/)`")
 IDENTIFIER = re.compile(r"`([A-Za-z_]\w*)`")
+WRITTEN = re.compile(r"^```\w+ (\S+)$", re.MULTILINE)
+"""A file that the page has the reader write: its name stands at the head of its text."""
 LINK = re.compile(r"\[[^\]]*\]\(([^)#\s]+)[^)]*\)")
 NOT_OURS = {"nan", "inf", "no", "fastmath", "min", "max", "abs", "odom", "map", "RecursionError", "json", "uv"}
 
@@ -62,8 +66,10 @@ def test_links_inside_the_project_resolve(page: Path) -> None:
 
 @pytest.mark.parametrize("page", PAGES, ids=page_id)
 def test_every_file_and_folder_named_exists(page: Path) -> None:
-    for file, folder in PATH.findall(page.read_text()):
-        assert find(file or folder) is not None, file or folder
+    text = page.read_text()
+    written = set(WRITTEN.findall(text))
+    for file, folder in PATH.findall(text):
+        assert file in written or find(file or folder) is not None, file or folder
 
 
 @pytest.mark.parametrize("page", PAGES, ids=page_id)
@@ -78,6 +84,26 @@ def test_every_name_stands_in_the_file_that_the_page_gives(page: Path) -> None:
 def test_every_other_name_occurs_in_the_sources(page: Path) -> None:
     named = {name for name in IDENTIFIER.findall(page.read_text()) if not name.startswith("_")} - NOT_OURS
     assert named - words_of_the_sources() == set()
+
+
+COMMANDS = [
+    (page, line)
+    for page in PAGES
+    for line in re.findall(r"^(?:\$ |    )((?:yes '' \| )?simconsole [a-z].*)$", page.read_text(), re.MULTILINE)
+]
+
+
+@pytest.mark.parametrize(("page", "line"), COMMANDS, ids=lambda part: part if isinstance(part, str) else part.stem)
+def test_the_command_line_understands_every_command(page: Path, line: str) -> None:
+    """What a page shows is a command with its options; tests/test_readme.py and others run what can be run anywhere."""
+    words = shlex.split(line.partition("simconsole ")[2], comments=True)
+    words = [word for word in words if word != "&"]
+    parser().parse_args(words)
+
+
+def test_commands_of_many_pages_are_found() -> None:
+    assert len(COMMANDS) > 40
+    assert len({page for page, _ in COMMANDS}) > 10
 
 
 def test_tick_page_names_a_place_for_every_step() -> None:

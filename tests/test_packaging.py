@@ -21,6 +21,7 @@ import pytest
 from packaging.requirements import Requirement
 
 from simconsole import __version__
+from simconsole.cli.new.examples import EXAMPLES
 from tests.paths import ROOT
 
 
@@ -80,7 +81,9 @@ def test_wheel_holds_the_package_and_every_profile_and_nothing_else(wheel: Path)
     with zipfile.ZipFile(wheel) as archive:
         names = {name for name in archive.namelist() if ".dist-info/" not in name}
         profiles = {f"simconsole/_{name}" for name in tracked("profiles/**/*")}
-        assert names == tracked("simconsole/**/*.py").union(*map(tracked, DATA)) | profiles
+        examples = {f"simconsole/_{path}" for name in EXAMPLES for path in tracked(f"examples/{name}/**/*")}
+        examples = {path for path in examples if "/__pycache__/" not in path}
+        assert names == tracked("simconsole/**/*.py").union(*map(tracked, DATA)) | profiles | examples
         for name in profiles:
             assert archive.read(name) == (ROOT / name.removeprefix("simconsole/_")).read_bytes()
 
@@ -135,6 +138,16 @@ def test_installed_package_and_its_profiles_come_from_the_wheel(installation: In
     assert str(ROOT) not in path
     for kind, found in names.items():
         assert found == sorted(file.stem for file in (ROOT / "profiles" / kind).glob("*.yaml"))
+
+
+def test_installed_command_writes_every_example(installation: Installation) -> None:
+    for name in EXAMPLES:
+        done = installation.run("simconsole", "new", "example", name)
+        assert done.returncode == 0, done.stderr
+        written = {path.name for path in (installation.work / name).rglob("*") if path.is_file()}
+        assert written == {
+            path.name for path in (ROOT / "examples" / name).rglob("*") if path.suffix != ".pyc" and path.is_file()
+        }
 
 
 def test_installed_command_drives_and_replays_from_another_folder(installation: Installation) -> None:

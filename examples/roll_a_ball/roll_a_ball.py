@@ -1,57 +1,43 @@
-"""Roll a ball from the ROS side: send desired speed and desired pose, read the current pose.
-
-simconsole drive roll_a_ball --out out/ball        # the console, in one terminal
-python examples/roll_a_ball/roll_a_ball.py         # this program, in another
-"""
+"""Roll a ball from the ROS side, with roslibpy over rosbridge. `--keys`: by the arrow keys."""
 
 import argparse
-import math
+import threading
+from typing import Any
 
-from simconsole.bridge.client import BridgeClient
-from simconsole.values.errors import BridgeError
+import roslibpy
+from game import SPEED_MPS, Game
 
-WAYPOINTS_M = [(2.0, 0.0), (2.0, 2.0), (0.0, 2.0), (0.0, 0.0)]
-SPEED_MPS = 0.8
-ARRIVED_M = 0.05
-PATIENCE_S = 60.0
+words = argparse.ArgumentParser(description=__doc__)
+words.add_argument("--host", default="127.0.0.1")
+words.add_argument("--port", type=int, default=9090)
+words.add_argument("--keys", action="store_true", help="arrow keys roll the ball")
+options = words.parse_args()
+game, ended = Game(options.keys), threading.Event()
 
-
-def main() -> None:
-    """Connect, set the speed, roll."""
-    parser = argparse.ArgumentParser(description="Roll a ball round a square, over rosbridge.")
-    parser.add_argument("--url", default="ws://127.0.0.1:9090")
-    with BridgeClient(parser.parse_args().url, comes_back=False) as client:
-        client.advertise("/ball/desired_speed", "std_msgs/Float64")
-        client.advertise("/ball/desired_pose", "geometry_msgs/PoseStamped")
-        client.advertise("/console/request", "std_msgs/String")
-        client.subscribe("/console/arbitration", "simconsole_msgs/Arbitration")
-        client.subscribe("/odom", "nav_msgs/Odometry")
-        client.connect(PATIENCE_S)  # whoever starts first waits for the other
-        client.publish("/ball/desired_speed", {"data": SPEED_MPS})
-        try:
-            roll(client)
-        except BridgeError:
-            print("the drive has ended")
+ros = roslibpy.Ros(options.host, options.port)
+ros.run(timeout=60)
+ros.on("close", lambda *_: ended.set())  # the console leaves at the end of the drive
+speed = roslibpy.Topic(ros, "/ball/desired_speed", "std_msgs/Float64")
+pose = roslibpy.Topic(ros, "/ball/desired_pose", "geometry_msgs/PoseStamped")
+request = roslibpy.Topic(ros, "/console/request", "std_msgs/String")
+odometry = roslibpy.Topic(ros, "/odom", "nav_msgs/Odometry")
+for topic in (speed, pose, request):
+    topic.advertise()
+speed.publish({"data": SPEED_MPS})
 
 
-def roll(client: BridgeClient) -> None:
-    """Answer every pose of the ball with the pose it shall roll to, one waypoint after the other."""
-    reached = poses = 0
-    while (received := client.receive(30.0)) is not None:
-        if received.topic == "/console/arbitration":
-            if received.message.mode_words != "AUTONOMOUS" and poses % 25 == 10:
-                client.publish("/console/request", {"data": "autonomous"})  # until the console lets us
-            continue
-        poses += 1
-        position, stamp = received.message.pose.pose.position, received.message.header.stamp
-        target = WAYPOINTS_M[reached % len(WAYPOINTS_M)]
-        if math.dist((position.x, position.y), target) < ARRIVED_M:
-            reached += 1
-            print(f"{stamp.sec:4d} s  reached {target}, the ball is at ({position.x:.3f}, {position.y:.3f})")
-        pose = {"position": {"x": target[0], "y": target[1]}, "orientation": {"w": 1.0}}
-        header = {"stamp": {"sec": stamp.sec, "nanosec": stamp.nanosec}, "frame_id": "map"}
-        client.publish("/ball/desired_pose", {"header": header, "pose": pose})
+def answer(message: Any) -> None:
+    """Answer the ball's pose with the pose that it shall roll to; in lockstep the console waits for this."""
+    now = message["pose"]["pose"]["position"]
+    x_m, y_m = game.roll(now["x"], now["y"])
+    header = {"stamp": message["header"]["stamp"], "frame_id": "map"}
+    goal = {"position": {"x": x_m, "y": y_m, "z": 0.0}, "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}}
+    pose.publish({"header": header, "pose": goal})
+    if game.poses in (10, 30, 50):  # who commands may ask to drive; once granted, asking again changes nothing
+        request.publish({"data": "autonomous"})
 
 
-if __name__ == "__main__":
-    main()
+odometry.subscribe(answer)
+ended.wait()
+print(f"the drive has ended, {len(game.left)} cubes are left")
+ros.terminate()

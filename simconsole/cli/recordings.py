@@ -161,12 +161,20 @@ def compare(options: Namespace) -> Outcome:
 
 
 def report(options: Namespace) -> Outcome:
-    """Write report.html into the bundle."""
-    from simconsole.evaluation.report.exports import write_report
+    """Write report.html into the bundle; with a second bundle a page of both side by side."""
+    from simconsole.evaluation.report.exports import write_report, write_side_by_side
 
+    folder = Path(options.bundle)
+    if options.other is not None:
+        beside = folder.resolve().with_name(f"{folder.resolve().name}-and-{Path(options.other).resolve().name}.html")
+        page = Path(options.out) if options.out else beside
+        found = write_side_by_side(folder, Path(options.other), page)
+        return Outcome(0, {"page": str(page), "drives": found}, str(page))
+    if options.out is not None:
+        raise RecordingError("command line: --out: only with a second bundle; a report lies in its bundle")
     with Progress("writing the report") as progress:
-        metrics = write_report(Path(options.bundle), progress.done)
-    return _of_whole_drive(options.bundle, metrics, str(Path(options.bundle) / "report.html"))
+        metrics = write_report(folder, progress.done)
+    return _of_whole_drive(options.bundle, metrics, str(folder / "report.html"))
 
 
 def view(options: Namespace) -> Outcome:

@@ -1,4 +1,7 @@
-"""The paper's first example as two programs: the ROS side sends desired speed and pose, the console rolls the ball."""
+"""The paper's first example as two programs: the ROS side sends desired speed and pose, the console rolls the ball.
+
+Its node of ROS 2 rolls in tests/interop/test_roll_a_ball.py.
+"""
 
 import math
 import os
@@ -6,6 +9,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from runpy import run_path
 
 import numpy as np
 import pytest
@@ -21,7 +25,7 @@ from tests.patience import PATIENCE_S
 from tests.ports import free_port
 
 EXAMPLE = Path(simconsole.__file__).parents[1] / "examples" / "roll_a_ball" / "roll_a_ball.py"
-WAYPOINTS_M = [(2.0, 0.0), (2.0, 2.0), (0.0, 2.0), (0.0, 0.0)]
+GAME = run_path(str(EXAMPLE.with_name("game.py")))
 
 
 class Rolled:
@@ -36,7 +40,7 @@ class Rolled:
         session.write_text(shipped.replace("port: 9090", f"port: {port}"))
         with Running(folder, "drive", session, "--out", self.bundle, "--json") as console:
             example = subprocess.run(
-                [sys.executable, str(EXAMPLE), "--url", f"ws://127.0.0.1:{port}"],
+                [sys.executable, str(EXAMPLE), "--port", str(port)],
                 capture_output=True,
                 text=True,
                 timeout=PATIENCE_S,
@@ -55,15 +59,41 @@ def rolled(tmp_path_factory: pytest.TempPathFactory) -> Rolled:
     return Rolled(tmp_path_factory.mktemp("ball"))
 
 
-def test_the_ball_rolls_from_waypoint_to_waypoint(rolled: Rolled) -> None:
-    reached = [(float(x), float(y)) for x, y in re.findall(r"reached \(([-\d.]+), ([-\d.]+)\)", rolled.said)]
-    assert reached[:4] == WAYPOINTS_M
-    assert "the drive has ended" in rolled.said
+def test_the_ball_collects_every_cube(rolled: Rolled) -> None:
+    collected = re.findall(r"collected (\d) of 8 cubes at \(([-\d.]+), ([-\d.]+)\)", rolled.said)
+    assert [int(count) for count, _, _ in collected] == [1, 2, 3, 4, 5, 6, 7, 8]
+    assert "the drive has ended, 0 cubes are left" in rolled.said
     x, y = rolled.table.column("vehicle.x_m"), rolled.table.column("vehicle.y_m")
-    for waypoint in WAYPOINTS_M:
-        assert np.hypot(x - waypoint[0], y - waypoint[1]).min() < 0.05
+    for cube in GAME["CUBES_M"]:
+        assert np.hypot(x - cube[0], y - cube[1]).min() < GAME["TOUCH_M"]
     speed = np.hypot(rolled.table.column("vehicle.vx_mps"), rolled.table.column("vehicle.vy_mps"))
     assert math.isclose(speed.max(), 0.8, abs_tol=0.05), "at the speed that was asked for"
+
+
+def test_arrow_keys_say_where_it_rolls() -> None:
+    game = GAME["Game"]()
+    game.by_keys = True
+    assert game.roll(0.5, 0.25) == (0.5, 0.25), "no key, no way"
+    for key, goal in (("A", (0.5, 1.25)), ("B", (0.5, -0.75)), ("C", (1.5, 0.25)), ("D", (-0.5, 0.25))):
+        game.press(f"\x1b[{key}")
+        assert game.roll(0.5, 0.25) == goal
+    game.press(" ")
+    assert game.roll(0.5, 0.25) == (0.5, 0.25)
+    assert len(game.left) == 8
+    game.roll(1.5, 0.0)
+    assert len(game.left) == 7
+
+
+def test_sessions_of_the_example_are_the_shipped_one_but_for_what_they_say() -> None:
+    shipped = simconsole.load("roll_a_ball").profile
+    for name, pacing in (("ros2.yaml", "lockstep"), ("by_hand.yaml", "realtime")):
+        own = simconsole.load(EXAMPLE.with_name(name)).profile
+        assert own.mode.pacing == pacing
+        assert (own.scenario.vehicle, own.features, own.mode.tick_hz) == (
+            "ball",
+            shipped.features,
+            shipped.mode.tick_hz,
+        )
 
 
 def test_nobody_sits_at_the_wheel_and_the_ros_side_asks_for_control(rolled: Rolled) -> None:

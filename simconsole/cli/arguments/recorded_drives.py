@@ -15,10 +15,12 @@ def recordings(commands: Any) -> None:
     sign.add_argument("--name", default="", metavar="TEXT", help="who signs, for people to read")
     sign.add_argument("--new-key", metavar="FILE", help="make a key there, and its public half in FILE.pub")
     sign.add_argument("--remove", action="store_true", help="take the signature away, to change the bundle")
-    report = command(commands, "report", "recordings:report", "write the HTML report of a bundle")
+    report = command(commands, "report", "recordings:report", "the HTML report of a bundle, or of two side by side")
     view = command(commands, "view", "recordings:view", "show a drive in rerun: a bundle's, or the one that goes on")
     for one in (replay, verify, report):
         one.add_argument("bundle", metavar="BUNDLE", help="the folder that a drive has written")
+    report.add_argument("other", nargs="?", metavar="OTHER", help="another one: both side by side on one page")
+    report.add_argument("--out", metavar="FILE", help="with OTHER: the page (default: beside the first bundle)")
     verify.add_argument("--signer", metavar="FILE.pub", help="the public key that must have signed it")
     view.add_argument("bundle", nargs="?", metavar="BUNDLE", help="a drive's folder (default: the drive that goes on)")
     view.add_argument("--no-open", action="store_true", help="only write scene.rrd, or only serve the drive")

@@ -13,9 +13,11 @@ def tools(commands: Any) -> None:
     _devices(commands)
     _world(commands)
     _bridge(commands)
-    new = command(commands, "new", "new.new_command:new", "a template that runs at once, with a test beside it")
-    new.add_argument("kind", choices=NEW_KINDS)
-    new.add_argument("name", metavar="NAME", help="lower-case letters, digits and _")
+    new = command(
+        commands, "new", "new.new_command:new", "a template that runs at once, with a test beside it, or an example"
+    )
+    new.add_argument("kind", choices=(*NEW_KINDS, "example"))
+    new.add_argument("name", metavar="NAME", help="lower-case letters, digits and _; of an example: its name")
     new.add_argument("--out", metavar="DIR", default=".", help="where (default: here)")
     command(commands, "doctor", "doctor:doctor", "what this machine has and lacks")
 

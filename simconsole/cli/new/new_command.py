@@ -7,6 +7,7 @@ from string import Template
 from typing import Final
 
 from simconsole.cli.new import driver_texts, metric_texts, platform_texts, texts, world_texts
+from simconsole.cli.new.examples import write_example
 from simconsole.cli.outcome import Outcome
 from simconsole.profiles.files.loader import find
 from simconsole.values.errors import ProfileError
@@ -47,11 +48,13 @@ _NAME: Final = re.compile(r"[a-z][a-z0-9_]{0,40}")
 
 
 def new(options: Namespace) -> Outcome:
-    """Write the files of a kind; none that is there is replaced.
+    """Write the files of a kind, or of an example; none that is there is replaced.
 
     Raises:
         ProfileError: a name that is none, a file that is there already or cannot be written.
     """
+    if options.kind == "example":
+        return write_example(Path(options.out), options.name)
     folder, name = Path(options.out), str(options.name)
     if not _NAME.fullmatch(name):
         raise ProfileError(f"command line: NAME: value {name}: lower-case letters, digits and _, up to 41")

@@ -16,7 +16,7 @@ from simconsole.devices.calibration.wizard import QUIT, SKIP, Entry, Wizard
 from simconsole.devices.setup.device_commands import Pace, Say, answer, realtime
 from simconsole.devices.sources.raw_joysticks import RawJoysticks
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
-from simconsole.profiles.device import CockpitProfile, DeviceKey
+from simconsole.profiles.device import Buttons, CockpitProfile, DeviceKey
 from simconsole.profiles.strict_yaml import to_yaml
 from simconsole.values.errors import DeviceError
 from simconsole.values.host.files import write_atomically
@@ -106,11 +106,15 @@ class _Bench:
         self._holds = HeldStill(LOOK_HZ)
 
     def put(self, step: str, text: str) -> str:
-        """Return what was typed at a step, nothing for Enter or for what was held still."""
+        """Return what was typed at a step, nothing for Enter or for what was held still.
+
+        Of a virtual cockpit Enter skips what it has not: nobody need know it.
+        """
         if self._hands is not None:
             self._hands.do(step)
         if self._typed is None or step in TYPED:
-            return answer(self._ask, f"{text} ")
+            said = answer(self._ask, f"{text} ")
+            return SKIP if not said and self._hands is not None and not self._hands.has(step) else said
         self._say(text)
         return self._wait_for_hold(step, self._typed)
 
@@ -182,10 +186,23 @@ class _Hands:
     """Virtual devices that do what each step asks for."""
 
     def __init__(self, cockpit: CockpitProfile) -> None:
+        self._profile = cockpit
         self._cockpit = VirtualCockpit(cockpit)
         self._settings = cockpit_settings(cockpit, LOOK_HZ)
         self._lock_rad = 0.5 * cockpit.wheel.lock_to_lock_deg * RAD_PER_DEG
         self.close = self._cockpit.close
+
+    def has(self, step: str) -> bool:
+        """Return whether the cockpit has what a step asks for."""
+        profile = self._profile
+        if step in ("clutch", "handbrake"):
+            return getattr(profile.pedals, step) is not None
+        if step == "lever":
+            return profile.shifter.pattern == "h"
+        if step.startswith("gear "):
+            gear = int(step.removeprefix("gear "))
+            return profile.shifter.reverse is not None if gear < 0 else gear <= len(profile.shifter.gears)
+        return step not in Buttons.__struct_fields__ or getattr(profile.buttons, step) is not None
 
     def do(self, step: str) -> None:
         self._cockpit.write(raw_sample(self._intent(step), self._settings))

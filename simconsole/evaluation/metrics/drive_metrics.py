@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from simconsole.evaluation.metrics.advice_metrics import advice_metrics
 from simconsole.evaluation.metrics.encounters import encounters
 from simconsole.evaluation.metrics.fault_metrics import plain_spans
+from simconsole.evaluation.metrics.marks import marks
 from simconsole.evaluation.metrics.registered import Driven, own_metrics
 from simconsole.evaluation.metrics.rule_metrics import plain_events
 from simconsole.evaluation.metrics.table import Drive
@@ -140,6 +141,7 @@ def metrics(
             }
             for change in (mode_changes(drive, way) if changes is None else changes)
         ],
+        "marks": marks(drive, way),
         "faults": plain_spans(drive, faults),
         "rules": plain_events(drive),
         "road": encounters(drive, way),

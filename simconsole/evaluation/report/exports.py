@@ -6,6 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
+from simconsole.evaluation.report.metric_rows import rounded
 from simconsole.evaluation.report.scene_export import SCENE, scene_process
 from simconsole.processes.lifetimes import remove_half_made, undone
 from simconsole.profiles.faults import fault_label
@@ -15,13 +16,14 @@ from simconsole.recording.bundles.provenance import facts as provenance_facts
 from simconsole.recording.bundles.replay_bundle import recorded_session
 from simconsole.session.scene_worker import LIVE_SCENE
 from simconsole.tick.assembly import ResolvedSession
+from simconsole.values.errors import RecordingError
 from simconsole.world.kinds.worlds import open_world
 from simconsole.world.route import Route
 
 REPORT: Final = "report.html"
-PASSES: Final = 9
+PASSES: Final = 10
 """How often a report passes over its drive: to count the ticks, for the track, the mode changes, the acceleration, the
-faults, the wheel, the take-overs (where there are any), the map and the traces."""
+marks, the faults, the wheel, the take-overs (where there are any), the map and the traces."""
 Told = Callable[[str, float], object]
 """Told what is being made, and the share of it that is done, from 0 to 1."""
 
@@ -74,6 +76,31 @@ def write_report(folder: Path, told: Told = _untold) -> dict[str, Any]:
     return write_exports(folder, scene=False, told=told)
 
 
+def write_side_by_side(first: Path, second: Path, page: Path) -> dict[str, Any]:
+    """Write the page of two bundles side by side; return the metrics of each by its name.
+
+    Raises:
+        RecordingError: one of them is no bundle, both are the same, or the page cannot be written.
+    """
+    from simconsole.evaluation.metrics.table import recorded_drive
+    from simconsole.evaluation.report.paired_page import Side
+    from simconsole.evaluation.report.side_page import write_side_page
+
+    if first.resolve() == second.resolve():
+        raise RecordingError(f"{second}: is the same bundle: two different ones can be shown side by side")
+    bundles = open_bundle(first), open_bundle(second)
+    opened = [recorded_session(bundle) for bundle in bundles]
+    names = [folder.resolve().name for folder in (first, second)]
+    if names[0] == names[1]:
+        names = [str(folder) for folder in (first, second)]
+    one, other = (
+        Side(name, recorded_drive(bundle.log), _route(resolved))
+        for name, bundle, resolved in zip(names, bundles, opened, strict=True)
+    )
+    a, b = (_facts(resolved, bundle.manifest) for resolved, bundle in zip(opened, bundles, strict=True))
+    return write_side_page(page, (one, other), (a, b))
+
+
 def write_scene(folder: Path, told: Told = _untold) -> Path:
     """Write scene.rrd into the bundle and return its path.
 
@@ -111,6 +138,7 @@ def _report(bundle: Bundle, page: bool, told: Callable[[float], object]) -> dict
             _facts(resolved, manifest),
             faults=faults,
             latency_us=manifest.summary.get("latency_us"),
+            acts=manifest.summary.get("acts", ()),
         )
     return metrics(drive, route, None, faults)
 
@@ -123,8 +151,9 @@ def _facts(resolved: ResolvedSession, manifest: Manifest) -> dict[str, object]:
         "world": session.environment.world or "none",
         "driver": session.devices.driver,
         "pacing": session.mode.pacing,
+        "versions": ", ".join(f"{name} {version}" for name, version in manifest.versions.items()),
         **{
-            key.replace("_", " "): value
+            key.replace("_", " "): rounded(value) if isinstance(value, float) else value
             for key, value in manifest.summary.items()
             if not isinstance(value, dict | list)
         },

@@ -3,12 +3,14 @@
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from simconsole.evaluation.metrics.drive_metrics import ModeChange, lateral_errors
 from simconsole.evaluation.metrics.table import Array, Drive, runs
 from simconsole.evaluation.metrics.thinning import thinned
 from simconsole.evaluation.metrics.track import Track
 from simconsole.evaluation.report.colours import BAND, END, LIMIT, MODES, NOTE, PERSON, REMOTE
+from simconsole.evaluation.report.metric_rows import rounded
 from simconsole.values.labels import mode_label
 from simconsole.values.signals import Mode
 from simconsole.values.units import DEG_PER_RAD, KMH_PER_MPS
@@ -17,43 +19,52 @@ from simconsole.world.route import Route
 _POINTS: Final = 1600
 _CM_PER_M: Final = 100.0
 _ROOM: Final = 1.35  # upper end of the deviation's axis over its largest value
+_LEAST_M: Final = 1e-3  # of which such an axis shows at least so much
+_METRES_FROM_M: Final = 1.5  # deviations beyond it are told in metres
 _NARROW: Final = 0.05  # share of the drive below which the mode's label does not fit
 
 
 def draw_traces(figure: Any, drive: Drive, way: Track, changes: list[ModeChange], route: Route | None) -> None:
-    """Draw the panels into a matplotlib figure, one distance axis for all."""
-    lateral, speed, wheel, modes = figure.subplots(
-        4, 1, sharex=True, gridspec_kw={"height_ratios": (3.0, 2.6, 2.2, 0.55), "hspace": 0.04}
+    """Draw the panels into a matplotlib figure, one distance axis for all; a deviation has its driver's own scale."""
+    drivers = _drivers(way) if route is not None else [("", PERSON, way.autonomous)]
+    heights = [3.0 / len(drivers) + 0.6 * (len(drivers) - 1)] * len(drivers)
+    *laterals, speed, wheel, modes = figure.subplots(
+        len(drivers) + 3, 1, sharex=True, gridspec_kw={"height_ratios": (*heights, 2.6, 2.2, 0.55), "hspace": 0.04}
     )
-    _draw_lateral(lateral, way, route)
+    for axes, driver in zip(laterals, drivers, strict=True):
+        _draw_lateral(axes, way, route, *driver)
     _draw_speed(speed, way, route)
     _draw_steering(wheel, drive, way)
     _draw_modes(modes, way)
-    for axes in (lateral, speed, wheel):
+    for axes in (*laterals, speed, wheel):
         _draw_changes(axes, changes)
     modes.set_xlabel("distance driven / m")
     modes.set_xlim(0.0, max(float(way.distance_m[-1]), 1.0))
 
 
-def _draw_lateral(axes: Any, way: Track, route: Route | None) -> None:
-    axes.set_title("Lateral deviation of base_link from the theoretical path, left positive")
-    axes.set_ylabel("deviation / cm")
-    if route is None:
+def _drivers(way: Track) -> list[tuple[str, str, NDArray[np.bool_]]]:
+    """Return who drove, their colour, and in which ticks: whatever the autopilot did not drive is the person's."""
+    both = (("autopilot", REMOTE, way.autonomous), ("person", PERSON, ~way.autonomous))
+    return [one for one in both if one[2].any()]
+
+
+def _draw_lateral(axes: Any, way: Track, route: Route | None, who: str, colour: str, driven: NDArray[np.bool_]) -> None:
+    """Draw one driver's deviation, scaled by it alone: a person's metres leave the autopilot's centimetres readable."""
+    axes.set_title("Lateral deviation of base_link from the theoretical path, left positive" + (who and f": {who}"))
+    errors = lateral_errors(way, driven)
+    if route is None or errors is None:
+        axes.set_ylabel("deviation / cm")
         axes.text(0.5, 0.5, "no course in this world", transform=axes.transAxes, ha="center", color=NOTE)
         return
-    errors = lateral_errors(way)
-    if errors is None:
-        _line(axes, way.distance_m, way.lateral_m * _CM_PER_M, PERSON, "person")
-        axes.legend(loc="upper right")
-        return
-    driven, deviation = way.autonomous, way.lateral_m * _CM_PER_M
-    rms, worst, at = errors.rms_m * _CM_PER_M, errors.max_m * _CM_PER_M, errors.max_at
-    axes.axhspan(-rms, rms, color=BAND, zorder=0, label=f"RMS {rms:.2f} cm")
-    _line(axes, way.distance_m, np.where(driven, np.nan, deviation), PERSON, "person", linewidth=0.9)
-    _line(axes, way.distance_m, np.where(driven, deviation, np.nan), REMOTE, "autopilot")
-    axes.plot(way.distance_m[at], deviation[at], "o", color=END, markersize=5, label=f"max {worst:.2f} cm")
-    axes.set_ylim(-_ROOM * max(worst, 0.1), _ROOM * max(worst, 0.1))
-    axes.legend(loc="upper center", ncols=4)
+    unit, factor = ("m", 1.0) if errors.max_m > _METRES_FROM_M else ("cm", _CM_PER_M)
+    axes.set_ylabel(f"deviation / {unit}")
+    rms, worst, deviation = errors.rms_m * factor, errors.max_m * factor, way.lateral_m * factor
+    axes.axhspan(-rms, rms, color=BAND, zorder=0, label=f"RMS {rounded(rms)} {unit}")
+    _line(axes, way.distance_m, np.where(driven, deviation, np.nan), colour, who)
+    at, place = errors.max_at, deviation[errors.max_at]
+    axes.plot(way.distance_m[at], place, "o", color=END, markersize=5, label=f"max {rounded(worst)} {unit}")
+    axes.set_ylim(-_ROOM * max(worst, _LEAST_M * factor), _ROOM * max(worst, _LEAST_M * factor))
+    axes.legend(loc="upper center", ncols=3)
 
 
 def _draw_speed(axes: Any, way: Track, route: Route | None) -> None:

@@ -11,6 +11,8 @@ from simconsole.evaluation.metrics.track import Track
 from simconsole.evaluation.report.figure_map import draw_map
 from simconsole.evaluation.report.figure_panels import draw_panels
 from simconsole.evaluation.report.figure_traces import draw_traces
+from simconsole.evaluation.report.figure_words import panels_words
+from simconsole.evaluation.report.frame import picture
 from simconsole.world.route import Route
 
 STYLE: Final[Any] = {
@@ -45,13 +47,18 @@ def map_svg(drive: Drive, way: Track, changes: list[ModeChange], route: Route | 
 
 def traces_svg(drive: Drive, way: Track, changes: list[ModeChange], route: Route | None) -> str:
     """Return lateral deviation, speed and steering over the distance driven, with the mode beneath."""
-    return _svg("traces", (9.2, 7.6), lambda figure: draw_traces(figure, drive, way, changes, route))
+    return _svg("traces", (9.2, 9.2), lambda figure: draw_traces(figure, drive, way, changes, route))
 
 
 def panels_svg(name: str, panels: tuple[Panel, ...]) -> str:
     """Return the plots of a test manoeuvre, two beside each other."""
     rows = -(-len(panels) // 2)
     return _svg(name, (9.2, 2.9 * rows), lambda figure: draw_panels(figure, panels))
+
+
+def panels_picture(name: str, title: str, panels: tuple[Panel, ...]) -> str:
+    """Return them as a figure of a page, with a name and in words what they show."""
+    return picture(panels_svg(name, panels), title, panels_words(panels))
 
 
 def figure(size_inch: tuple[float, float], draw: Callable[[Any], None]) -> Any:

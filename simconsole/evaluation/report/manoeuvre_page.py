@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 from simconsole.evaluation.manoeuvres.attempt import Result
-from simconsole.evaluation.report.figures import panels_svg
-from simconsole.evaluation.report.page import html_page
+from simconsole.evaluation.report.figures import panels_picture
+from simconsole.evaluation.report.frame import html_page
 from simconsole.profiles.manoeuvre import Limit
 from simconsole.values.errors import RecordingError
 from simconsole.values.host.files import write_atomically
@@ -51,11 +51,12 @@ def _chapter(chapter: Chapter) -> str:
         )
     verdict = _BAD if chapter.problems else _GOOD
     notes = "".join(f"<p>{escape(problem)}</p>" for problem in chapter.problems)
-    figure = panels_svg(chapter.name, chapter.result.panels) if chapter.result.panels else ""
+    panels = chapter.result.panels
+    figure = panels_picture(chapter.name, chapter.title, panels) if panels else ""
     return (
         f"<h2>{escape(chapter.title)}</h2>\n<p class=note>{escape(chapter.name)}: {verdict}</p>{notes}\n"
         + "\n".join((*lines, "</table>"))
-        + f"\n<figure>{figure}</figure>"
+        + f"\n{figure}"
     )
 
 

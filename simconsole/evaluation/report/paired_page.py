@@ -12,8 +12,10 @@ from simconsole.evaluation.metrics.drive_metrics import metrics
 from simconsole.evaluation.metrics.table import Array, Drive
 from simconsole.evaluation.metrics.thinning import thinned
 from simconsole.evaluation.metrics.track import Track, track
-from simconsole.evaluation.report.figures import panels_svg
-from simconsole.evaluation.report.page import METRICS, html_page
+from simconsole.evaluation.report.figures import panels_picture
+from simconsole.evaluation.report.frame import html_page
+from simconsole.evaluation.report.metric_rows import METRICS
+from simconsole.evaluation.report.tables import sides_table
 from simconsole.recording.differences import FieldDifference
 from simconsole.values.errors import RecordingError
 from simconsole.values.host.files import write_atomically
@@ -23,6 +25,7 @@ from simconsole.world.route import Route
 _POINTS: Final = 1600
 _FIELDS: Final = 40
 """Fields that are listed; of the others only the number is told."""
+WHO: Final = {"autonomous": "What the autopilot drove", "manual": "What the person drove"}
 
 
 class Side(NamedTuple):
@@ -53,9 +56,9 @@ def write_paired_report(
     body = [
         f"<h1>{escape(title)}</h1>",
         *(f'<p class="note"><b>{escape(note)}</b></p>' for note in notes),
-        f"<figure>{panels_svg('pair', _panels(sides, ways))}</figure>",
+        panels_picture("pair", title, _panels(sides, ways)),
         "<h2>Metrics</h2>",
-        *(_metrics_table(found, part) for part in (None, "autonomous", "manual")),
+        *(pair_table(found, part) for part in (None, "autonomous", "manual")),
         "<h2>Fields that differ</h2>",
         _differences_table(differences),
     ]
@@ -108,21 +111,20 @@ def _thin(x: Array, y: Array) -> tuple[Array, Array]:
     return x[kept], y[kept]
 
 
-def _metrics_table(found: Mapping[str, Mapping[str, Any]], part: str | None) -> str:
-    """Return the table of the whole drives, or of the parts that one side drove; empty where neither has it."""
+def pair_table(found: Mapping[str, Mapping[str, Any]], part: str | None) -> str:
+    """Return the table of two whole drives, or of the parts that one side drove; empty where neither has it.
+
+    Args:
+        found: metrics of the two, by the name of each.
+        part: `autonomous` or `manual`; None: the whole.
+    """
     (first, one), (second, other) = ((name, of if part is None else of[part]) for name, of in found.items())
     if one is None or other is None:
-        return "" if one is other else f"<p>{part}: only in one of the two</p>"
-    lines = [
-        f"<table><tr><th>{escape(part or 'whole drive')}</th><th class=n>{escape(first)}</th>"
-        f"<th class=n>{escape(second)}</th><th class=n>difference</th></tr>"
-    ]
-    for key, label, form in METRICS:
-        a, b = one.get(key), other.get(key)
-        if a is not None and b is not None:
-            cells = "".join(f"<td class=n>{text}</td>" for text in (form.format(a), form.format(b), form.format(b - a)))
-            lines.append(f"<tr><th>{label}</th>{cells}</tr>")
-    return "\n".join((*lines, "</table>"))
+        return "" if one is other else f"<p>{WHO[part or '']}: only in one of the two.</p>"
+    known = [row for row in METRICS if one.get(row.key) is not None and other.get(row.key) is not None]
+    apart = {row.key: other[row.key] - one[row.key] for row in known}
+    head = f"<h3>{'The whole drives' if part is None else WHO[part]}</h3>"
+    return f"{head}\n{sides_table(known, (first, second, 'difference'), (one, other, apart))}"
 
 
 def _differences_table(differences: Sequence[FieldDifference]) -> str:

@@ -7,8 +7,8 @@ from typing import Final
 
 from simconsole.evaluation.checks.review import ColumnReview, Review
 from simconsole.evaluation.manoeuvres.attempt import Line, Panel
-from simconsole.evaluation.report.figures import panels_svg
-from simconsole.evaluation.report.page import html_page
+from simconsole.evaluation.report.figures import panels_picture
+from simconsole.evaluation.report.frame import html_page
 from simconsole.values.errors import RecordingError
 from simconsole.values.host.files import write_atomically
 
@@ -49,7 +49,7 @@ def _chapter(review: Review) -> str:
     if not review.columns:
         return f"{head}<p>No sampled value differs.</p>" if not review.remarks else head
     panels = tuple(map(_panel, review.columns[:PLOTS]))
-    return f"{head}\n<figure>{panels_svg(review.scenario, panels)}</figure>\n{_table(review.columns)}"
+    return f"{head}\n{panels_picture(review.scenario, review.title, panels)}\n{_table(review.columns)}"
 
 
 def _panel(review: ColumnReview) -> Panel:

@@ -9,8 +9,8 @@ import numpy as np
 
 from simconsole.evaluation.manoeuvres.attempt import Line, Panel
 from simconsole.evaluation.metrics.table import Array
-from simconsole.evaluation.report.figures import panels_svg
-from simconsole.evaluation.report.page import html_page
+from simconsole.evaluation.report.figures import panels_picture
+from simconsole.evaluation.report.frame import html_page
 from simconsole.evaluation.sweep.plan import Plan
 from simconsole.evaluation.sweep.results import metric_names
 from simconsole.evaluation.sweep.task import GOOD, Task, TaskResult
@@ -78,7 +78,7 @@ def write_sweep_page(path: Path, plan: Plan, results: Mapping[int, TaskResult], 
     if found:
         parts += [
             "<h2>Distributions</h2>",
-            f"<figure>{panels_svg('sweep', tuple(map(_panel, found[:PLOTS])))}</figure>",
+            panels_picture("sweep", "Distributions", tuple(map(_panel, found[:PLOTS]))),
             _table(plan, found),
             "<h2>Least and most again</h2>",
             _commands(plan, found, again),

@@ -110,7 +110,8 @@ def test_step_that_fails_is_asked_again_until_the_person_gives_up(
 
     def ask(text: str) -> str:
         refused = len([line for line in said if "again, please: axes: value none moved" in line])
-        return "q" if refused == 7 else ""
+        # The person insists on a handbrake that is not there: Enter alone would skip it.
+        return "q" if refused == 7 else "now" if "HANDBRAKE" in text else ""
 
     with pytest.raises(KeyboardInterrupt):
         calibrate_devices(t500, tmp_path / "x.yaml", say=said.append, ask=ask, virtual=t500, pace=at_once)
@@ -244,3 +245,15 @@ def test_whole_calibration_in_a_terminal(tmp_path: Path) -> None:
     assert "throttle  [" in seen, "live bars"
     assert "\x1b[6A" in seen, "drawn over themselves"
     assert code == 0, seen
+
+
+@pytest.mark.parametrize("name", ["t500rs_th8rs", "g29"])
+def test_enter_alone_learns_a_virtual_cockpit_with_what_it_has(name: str, sdl: None, tmp_path: Path) -> None:
+    shipped = load("devices", name, CockpitProfile)
+    path = tmp_path / "cockpit.yaml"
+    calibrate_devices(shipped, path, say=quiet, ask=lambda text: "", virtual=shipped, pace=at_once)
+    learnt = load("devices", str(path), CockpitProfile)
+    assert learnt.pedals.handbrake is None
+    assert (learnt.shifter.gears, learnt.shifter.reverse) == (shipped.shifter.gears, shipped.shifter.reverse)
+    for role in Buttons.__struct_fields__:
+        assert (getattr(learnt.buttons, role) is None) == (getattr(shipped.buttons, role) is None)

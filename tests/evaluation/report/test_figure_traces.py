@@ -30,12 +30,29 @@ def test_deviation_of_person_and_autopilot_are_apart_and_in_cm(known: Any, cours
     assert np.nanmax(np.abs(autopilot.get_ydata())) == pytest.approx(2.0, abs=0.01)
     (worst,) = (line for line in lateral.get_lines() if str(line.get_label()).startswith("max "))
     assert worst.get_label() == f"max {abs(worst.get_ydata()[0]):.2f} cm"
+    assert lines(lateral, "person") == []
     low, high = lateral.get_ylim()
     assert low < -2.0 < 2.0 < high < 30.0, "the person's 30 cm do not decide the scale"
+    by_person = axes_of(known, course)[1]
+    (person,) = lines(by_person, "person")
+    assert np.nanmax(person.get_ydata()) == pytest.approx(30.0, abs=0.01)
+    assert 30.0 < by_person.get_ylim()[1] < 60.0
+    assert by_person.get_ylabel() == "deviation / cm"
+
+
+def test_metres_of_a_person_are_told_in_metres(known: Any, course: Course) -> None:
+    drive = drive_of(*known)
+    way = track(drive, course)
+    far = way._replace(lateral_m=np.where(way.autonomous, way.lateral_m, 7.25))
+    figure = blank()
+    draw_traces(figure, drive, far, mode_changes(drive, far), course)
+    assert [axes.get_ylabel() for axes in figure.axes[:2]] == ["deviation / cm", "deviation / m"]
+    assert figure.axes[0].get_ylim()[1] < 10.0
+    assert len(lines(figure.axes[1], "max 7.25 m")) == 1
 
 
 def test_speed_is_in_km_h_beside_the_limit(known: Any, course: Course) -> None:
-    speed = axes_of(known, course)[1]
+    speed = axes_of(known, course)[2]
     (driven,) = lines(speed, "driven")
     assert driven.get_ydata() == pytest.approx(36.0)
     assert len(lines(speed, "limit 50 km/h")) == 1
@@ -59,5 +76,5 @@ def test_without_a_course_the_panel_says_why_it_is_empty(known: Any) -> None:
 
 def test_hand_over_and_take_over_are_marked_and_nothing_else(known: Any, course: Course) -> None:
     axes = axes_of(known, course)
-    upright = [line for line in axes[2].get_lines() if len(set(line.get_xdata())) == 1]
+    upright = [line for line in axes[3].get_lines() if len(set(line.get_xdata())) == 1]
     assert len(upright) == 2
