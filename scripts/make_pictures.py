@@ -31,7 +31,7 @@ from simconsole.evaluation.report.figures import STYLE
 from simconsole.evaluation.video.drive_pictures import DrivePictures, Wanted
 from simconsole.evaluation.video.drive_sound import DriveSound
 from simconsole.evaluation.video.encoder import Frame, write_video
-from simconsole.evaluation.video.moments import Moment, moments
+from simconsole.evaluation.video.moments import VideoFrame, moments
 from simconsole.hud.window.raster import snapshot_png
 from simconsole.recording.bundles.bundle import Bundle, open_bundle
 from simconsole.recording.bundles.replay_bundle import recorded_session
@@ -78,7 +78,7 @@ class Drive(NamedTuple):
     table: Any
     in_mode_s: dict[Mode, float]
 
-    def moment(self, at_s: float) -> Moment:
+    def moment(self, at_s: float) -> VideoFrame:
         """Return the first moment from `at_s` on."""
         return next(moments(self.bundle.log, at_s, None, 1))
 
