@@ -97,7 +97,8 @@ def _near_heights(strips: Strips, x: Array, y: Array, cell_m: float) -> tuple[Ar
         far = index % 8 == 0  # every point near the road, some of them far from it: there they all say the same
         window, ahead, left = _around(strips, index, x, y, cell_m, reach if far else 8.0)
         squares = ahead * ahead + left * left
-        share = 1.0 / (1.0 + squares) ** 3
+        near = 1.0 / (1.0 + squares)
+        share = near * near * near
         if not far:
             share = share * (np.maximum(0.0, 1.0 - squares / 64.0)) ** 2
         plane = strips.height_m[index] + strips.grade[index] * ahead + strips.bank[index] * left

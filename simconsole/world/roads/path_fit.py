@@ -20,7 +20,6 @@ Array = NDArray[np.float64]
 
 STEP_M: Final = 0.5
 _SMOOTH_M: Final = 5.0  # the length over which a bend is spread where the corridor is wide
-_TIGHTER: Final = 3.0
 _ROUNDS: Final = 30
 _INSIDE: Final = 0.9  # of the corridor: what the second step may add
 _RETURN_M: Final = 3.0  # the correction's length
@@ -94,7 +93,8 @@ def _smoothed(points: Array, room: Array) -> Array:
         if not outside.any():
             break
         # Neighbours share the change of weight, else a single point would pull a kink into the line.
-        factor = np.where(outside, np.minimum(away / (_INSIDE * room), 2.0) ** _TIGHTER, 1.0)
+        over = np.minimum(away / (_INSIDE * room), 2.0)
+        factor = np.where(outside, over * over * over, 1.0)
         wide = np.pad(factor, 4, mode="edge")
         weight = weight * np.max([wide[shift : shift + len(factor)] for shift in range(9)], axis=0)
     return best

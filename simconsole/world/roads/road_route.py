@@ -84,7 +84,7 @@ def _along(lanes: Sequence[Lane]) -> tuple[Array, NDArray[np.bool_]]:
     place = np.clip(share * changes, 0.0, changes - 1e-9)
     number = place.astype(np.int64)
     x = np.clip((place - number - 0.05) / 0.9, 0.0, 1.0)
-    blend = x**3 * (10.0 - 15.0 * x + 6.0 * x * x)
+    blend = x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
     stack = np.stack(lines)
     rows = np.arange(len(share))
     line = stack[number, rows] * (1.0 - blend)[:, None] + stack[number + 1, rows] * blend[:, None]
