@@ -66,7 +66,17 @@ def turn(quaternion: dict[str, float]) -> np.ndarray:
 def test_pictures_of_a_drive_fit_the_road_by_their_camera_info(tmp_path: Path) -> None:
     """The white edge line of the lane, from the world's geometry through odometry, /tf_static and K to its pixels."""
     path, port = session(tmp_path)
-    command = (sys.executable, "-m", "simconsole", "drive", str(path), "--out", str(tmp_path / "bundle"), "--for", "60")
+    command = (
+        sys.executable,
+        "-m",
+        "simconsole",
+        "drive",
+        str(path),
+        "--out",
+        str(tmp_path / "bundle"),
+        "--for",
+        "600",
+    )
     with program(environment(), *command) as drive:
         wait_for_port(port)
         with client(f"ws://127.0.0.1:{port}") as web:

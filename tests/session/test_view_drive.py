@@ -11,7 +11,7 @@ from simconsole.processes.supervisor import STATUS
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.verification import verify
 from simconsole.session.worker_programs import LATENCY
-from tests.drives.console import Running, results, simconsole
+from tests.drives.console import Running
 from tests.patience import PATIENCE_S, wait_until
 
 SESSION = """\
@@ -29,15 +29,27 @@ mode: {pacing: realtime, tick_hz: 250}
 """
 
 
+def shown(core: int, name: str) -> Path | None:
+    """A file of the drive's run folder, if it is there."""
+    return next(Path("/dev/shm").glob(f"simconsole-{core}-*/{name}"), None)
+
+
+def has_drawn(core: int) -> bool:
+    """Whether the window has told how long it drew."""
+    told = shown(core, f"{LATENCY}.hud.json")
+    return told is not None and "draw" in json.loads(told.read_bytes())
+
+
 def driven(folder: Path, display: str, world: str = "urban", vehicle: str = "hatchback") -> tuple[Path, str]:
-    """Drive a few seconds; return the bundle and what was said on standard error."""
+    """Drive until a window has told of its pictures; return the bundle and what was said on standard error."""
     session = folder / "session.yaml"
     session.write_text(SESSION.replace("WORLD", world).replace("VEHICLE", vehicle))
-    words = ("--for", 12, "--out", folder / "bundle", "--json")
-    done = simconsole("drive", session, *words, SDL_VIDEODRIVER=display)
-    assert done.returncode == 0, done.stderr
-    assert results(done)["ticks"] == 12 * 250
-    return folder / "bundle", done.stderr
+    words = ("drive", session, "--for", 600, "--out", folder / "bundle", "--no-pack", "--json")
+    with Running(folder / "run", *words, SDL_VIDEODRIVER=display) as drive:
+        wait_until(lambda: has_drawn(drive.process.pid), "a picture")
+        drive.process.send_signal(signal.SIGINT)
+        assert drive.end().returncode == 130
+    return folder / "bundle", drive.err.read_text("utf-8")
 
 
 @pytest.mark.parametrize(("world", "vehicle"), [("urban", "hatchback"), ("null", "ball")])
@@ -53,15 +65,11 @@ def test_the_window_draws_while_the_drive_goes_on(tmp_path: Path, world: str, ve
 def test_a_killed_view_is_shown_again_while_the_drive_goes_on(tmp_path: Path) -> None:
     session = tmp_path / "session.yaml"
     session.write_text(SESSION.replace("WORLD", "urban").replace("VEHICLE", "hatchback"))
-    words = ("drive", session, "--for", 40, "--out", tmp_path / "bundle", "--no-pack", "--json")
+    words = ("drive", session, "--for", 600, "--out", tmp_path / "bundle", "--no-pack", "--json")
     with Running(tmp_path / "run", *words, SDL_VIDEODRIVER="offscreen") as drive:
         core = drive.process.pid
-
-        def file(name: str) -> Path | None:
-            return next(Path("/dev/shm").glob(f"simconsole-{core}-*/{name}"), None)
-
-        wait_until(lambda: file(f"{LATENCY}.hud.json"), "a picture")
-        status, drawn = file(STATUS), file(f"{LATENCY}.hud.json")
+        wait_until(lambda: shown(core, f"{LATENCY}.hud.json"), "a picture")
+        status, drawn = shown(core, STATUS), shown(core, f"{LATENCY}.hud.json")
         assert status is not None
         assert drawn is not None
         process = json.loads(status.read_bytes())["hud"]["process_id"]
