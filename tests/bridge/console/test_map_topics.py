@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from simconsole.bridge.console import map_topics
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.console.map_topics import GNSS, MARKERS, MOST_POINTS, MapTopics
 from simconsole.bridge.console.surroundings import Surroundings
@@ -112,3 +113,14 @@ def test_map_of_each_shipped_world_is_bounded_and_covers_its_route(snapshot: Cal
 def test_world_of_an_unknown_projection_has_no_place_on_the_earth() -> None:
     topics = MapTopics(standard_registry(), ShownMap(), LocalisationProfile()).topics()
     assert [topic.name for topic in topics] == [MARKERS]
+
+
+def test_platforms_of_one_world_share_the_work_of_its_markers(snapshot: Callable[..., Any]) -> None:
+    shown = shown_map(load_world("urban"))
+    drawing = shown.drawing()
+    around = Surroundings(shown_map=shown._replace(drawing=lambda: drawing))
+    before = map_topics._points_of.cache_info().misses
+    one, other = (heard(ConsoleBridge(BridgeProfile(port=0), around=around), [snapshot(1)]) for _ in range(2))
+    assert map_topics._points_of.cache_info().misses == before + 1
+    assert one[MARKERS] == other[MARKERS]
+    assert len(one[MARKERS][0]["markers"]) > 0
