@@ -117,3 +117,10 @@ def test_finder_of_names_sees_what_is_missing() -> None:
     names = defined(ROOT / "simconsole" / "tick" / "loop.py")
     assert {"run", "Components", "Components.devices", "Recorder.write"} <= names
     assert "walk" not in names
+
+
+def test_the_index_names_every_page() -> None:
+    index = (ROOT / "docs" / "README.md").read_text()
+    folder = ROOT / "docs"
+    pages = {path.relative_to(folder).as_posix() for path in folder.rglob("*.md") if path.parent.name != "decisions"}
+    assert {page for page in pages - {"README.md"} if f"({page})" not in index} == set()

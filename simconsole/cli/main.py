@@ -12,6 +12,7 @@ from importlib import import_module
 from typing import Any, TextIO
 
 from simconsole.cli.arguments import driving, recorded_drives, tools
+from simconsole.cli.terminal.parser import Parser
 from simconsole.processes.lifetimes import (
     INTERRUPTED,
     SIGNALS,
@@ -30,11 +31,9 @@ _AT_ONCE = ("demo", "drive", "bridge", "report", "view", "pack", "unpack")
 raises KeyboardInterrupt, which for some is the normal way to their result."""
 
 
-def parser() -> argparse.ArgumentParser:
+def parser() -> Parser:
     """Return the parser of every command."""
-    root = argparse.ArgumentParser(
-        prog="simconsole", description="A hardware-in-the-loop driving-simulator console.", allow_abbrev=False
-    )
+    root = Parser(prog="simconsole", description="A hardware-in-the-loop driving-simulator console.")
     root.add_argument("--version", action="version", version=f"simconsole {__version__}")
     commands = root.add_subparsers(dest="command", required=True, metavar="COMMAND")
     driving.driving(commands)
@@ -44,12 +43,14 @@ def parser() -> argparse.ArgumentParser:
     recorded_drives.video(commands)
     tools.tools(commands)
     tools.can(commands)
+    tools.lookup(commands)
+    root.commands = commands.choices
     return root
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Run one command and return its exit code. Errors a user can cause are one line on standard error."""
-    options = parser().parse_args(arguments)
+    options = parser().options_of(sys.argv[1:] if arguments is None else arguments)
     signals = SIGNALS if options.command in _AT_ONCE else SIGNALS[1:]
     if arguments is None:
         act_promptly()

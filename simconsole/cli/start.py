@@ -5,7 +5,7 @@ from typing import Final, NamedTuple
 
 import msgspec
 
-from simconsole.cli.world import world_names
+from simconsole.cli.lookup.listing import shipped
 from simconsole.devices.sources.sdl_source import SdlSource
 from simconsole.hud.start_page import Offer, StartPage, opened
 from simconsole.hud.window.start_window import choose, has_display
@@ -56,7 +56,7 @@ def offered(session: SessionProfile, message: str) -> Offered:
         lines.append(line)
     order = sorted(range(len(lines)), key=lambda at: (not lines[at].possible, cockpits[at] == KEYBOARD))
     watched = Offer("Nobody: a simulated person", "a virtual wheel; you watch")
-    worlds = {name: load_world(name) for name in world_names()}
+    worlds = {name: load_world(name) for name in shipped("worlds")}
     indoors = isinstance(resolve(session).vehicle, TurtlebotProfile)  # a car does not fit into a robots' arena
     places = ["", *(name for name, world in worlds.items() if isinstance(world, ArenaProfile) is indoors)]
     own = session.environment.world

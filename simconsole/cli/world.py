@@ -4,8 +4,9 @@ from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
+from simconsole.cli.lookup.listing import listed, listing_text
 from simconsole.cli.outcome import Outcome, table
-from simconsole.profiles.files.loader import names, read_bytes
+from simconsole.profiles.files.loader import read_bytes
 from simconsole.profiles.files.world_files import MAX_MAP_BYTES, load_world
 from simconsole.profiles.validation import PROFILE_FILES
 from simconsole.profiles.world import ArenaProfile, RoadsProfile, WorldProfile
@@ -32,7 +33,8 @@ def world(options: Namespace) -> Outcome:
         ProfileError: a profile or a map cannot be used.
     """
     if options.action == "list":
-        return _list()
+        worlds = listed("worlds")
+        return Outcome(0, {"worlds": worlds}, listing_text(worlds))
     if options.name is None:
         raise ProfileError(f"command line: WORLD: value missing: what to {options.action}")
     if options.action == "show":
@@ -42,18 +44,6 @@ def world(options: Namespace) -> Outcome:
         return _export(options.name, out, options.resolution)
     source = Path(options.name)
     return _import_ros_map(source, out) if source.suffix in PROFILE_FILES else _import(source, out)
-
-
-def _list() -> Outcome:
-    found = {name: load_world(name) for name in world_names()}
-    rows = [(name, f"{_kind(profile):<7} {profile.title}") for name, profile in found.items()]
-    worlds = [{"name": name, "kind": _kind(profile), "title": profile.title} for name, profile in found.items()]
-    return Outcome(0, {"worlds": worlds}, table(rows))
-
-
-def world_names() -> list[str]:
-    """Return the names of the shipped worlds."""
-    return [name for name in names("worlds") if not name.endswith(".plan")]
 
 
 def _kind(profile: WorldProfile) -> str:

@@ -4,14 +4,13 @@ msgspec names the path and the type but neither the value nor both bounds, so th
 values and the type along the path.
 """
 
-import difflib
 import re
 from typing import Annotated, Any, Final, TypeVar
 
 import msgspec
 import msgspec.inspect
 
-from simconsole.values.errors import ProfileError
+from simconsole.values.errors import ProfileError, did_you_mean
 
 T = TypeVar("T")
 
@@ -143,9 +142,7 @@ def _inner(kind: Any, step: str | int) -> list[Any]:
 
 def _unknown_key(path: Path, types: list[Any], value: object) -> str:
     known = [field.encode_name for kind in types for field in getattr(kind, "fields", ())]
-    near = difflib.get_close_matches(str(path[-1]), known, n=1)
-    hint = f"did you mean {near[0]}?" if near else f"one of {', '.join(known)}"
-    return f"{_dotted(path)}: value {_shown(value)}: unknown key, {hint}"
+    return f"{_dotted(path)}: value {_shown(value)}: unknown key, {did_you_mean(str(path[-1]), known)}"
 
 
 def _allowed(types: list[Any], what: str) -> str:

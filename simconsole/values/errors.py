@@ -22,6 +22,20 @@
 The command line prints the message on one line and exits with `exit_code`; a traceback means a bug.
 """
 
+import difflib
+from collections.abc import Sequence
+
+
+def near(word: str, known: Sequence[str]) -> str:
+    """Return the known word that was probably meant, "" where none is near."""
+    return next(iter(difflib.get_close_matches(word, known, n=1)), "")
+
+
+def did_you_mean(word: str, known: Sequence[str]) -> str:
+    """Return what to say of a word that is none of the known ones: which is near, or all."""
+    guess = near(word, known)
+    return f"did you mean {guess}?" if guess else f"one of {', '.join(known) or 'none'}"
+
 
 def one_line(error: BaseException) -> str:
     """Return what an error says, on one line; its name where it says nothing or is none of ours."""

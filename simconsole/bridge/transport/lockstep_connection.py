@@ -84,12 +84,6 @@ class LockstepConnection:
         """Whether the system took less than it was given."""
         return bool(self._unsent)
 
-    @property
-    def has_something(self) -> bool:
-        """Whether `flush` would find anything to send; a ping that `check` has written aside."""
-        session, half_written = self.session, self._unsent or self._writer.is_inside
-        return bool(half_written) or session is None or session.due_ns() is not None
-
     def read(self) -> None:
         """Read once and process what arrived: the handshake, then messages."""
         try:

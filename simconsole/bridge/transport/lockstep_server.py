@@ -354,8 +354,7 @@ class LockstepBridge:
         for connection in list(self._connections):
             if checking:
                 connection.check()
-            if checking or connection.has_something:
-                self._send_waiting(connection)
+            self._send_waiting(connection)
 
     def _remove(self, connection: LockstepConnection) -> None:
         if self._connections.pop(connection, None) is None:

@@ -7,7 +7,7 @@ from simconsole.cli.arguments.subparser import command
 
 def recordings(commands: Any) -> None:
     """Add what reads, signs, packs and compares bundles."""
-    replay = command(commands, "replay", "recordings:replay", "re-simulate a bundle; 0 only if every tick is equal")
+    replay = command(commands, "replay", "lookup.bundles:replay", "re-simulate bundles; 0 only if every tick is equal")
     verify = command(commands, "verify", "recordings:verify", "check every byte of a bundle, and its signature")
     sign = command(commands, "sign", "recordings:sign", "sign a bundle, so that nobody changes it unnoticed")
     sign.add_argument("bundle", nargs="?", metavar="BUNDLE", help="the folder that a drive has written")
@@ -17,7 +17,10 @@ def recordings(commands: Any) -> None:
     sign.add_argument("--remove", action="store_true", help="take the signature away, to change the bundle")
     report = command(commands, "report", "recordings:report", "the HTML report of a bundle, or of two side by side")
     view = command(commands, "view", "recordings:view", "show a drive in rerun: a bundle's, or the one that goes on")
-    for one in (replay, verify, report):
+    replay.add_argument(
+        "bundles", nargs="*", metavar="BUNDLE", help="folders that drives have written (default: the newest in out)"
+    )
+    for one in (verify, report):
         one.add_argument("bundle", metavar="BUNDLE", help="the folder that a drive has written")
     report.add_argument("other", nargs="?", metavar="OTHER", help="another one: both side by side on one page")
     report.add_argument("--out", metavar="FILE", help="with OTHER: the page (default: beside the first bundle)")

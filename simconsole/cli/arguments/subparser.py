@@ -14,7 +14,7 @@ def command(commands: Any, name: str, does: str, summary: str) -> argparse.Argum
         does: where its function is, which is loaded when it is called.
         summary: one line for the help pages.
     """
-    added: argparse.ArgumentParser = commands.add_parser(name, help=summary, description=summary, allow_abbrev=False)
+    added: argparse.ArgumentParser = commands.add_parser(name, help=summary, description=summary)
     added.set_defaults(does=does)
     added.add_argument("--json", action="store_true", help="print the results as one JSON object on the last line")
     return added

@@ -117,3 +117,10 @@ def can(commands: Any) -> None:
     can.add_argument("--engage", action="store_true", help="send: ask for autonomy until it is granted")
     requests = ("REQUEST_MANUAL", "REQUEST_SHARED", "REQUEST_TAKEOVER", "EMERGENCY_STOP", "RESET", "MARK")
     can.add_argument("--request", choices=requests, help="send: ask for this once")
+
+
+def lookup(commands: Any) -> None:
+    """Add list."""
+    names = "names of sessions, worlds, vehicles, scenarios, cockpits, languages"
+    listing = command(commands, "list", "lookup.listing:listing", names)
+    listing.add_argument("kind", nargs="?", metavar="KIND", help="only those of one kind (default: all)")

@@ -13,7 +13,7 @@ from typing import Final, TypeVar
 from simconsole.profiles import strict_yaml as profile_text
 from simconsole.profiles import validation as profile_errors
 from simconsole.profiles.strict_yaml import Plain, to_text
-from simconsole.values.errors import ProfileError
+from simconsole.values.errors import ProfileError, near
 
 __all__ = [
     "MAX_BYTES",
@@ -153,7 +153,10 @@ def _shipped(kind: str, name: str, shown: str, referrer: Path | None) -> Path:
     path = folder / f"{name}.yaml"
     allowed = len(name) <= _MAX_NAME and _NAME.fullmatch(name) is not None
     if not allowed or not _is_file(path) or not _stays_in(path, folder):
-        raise _refused(kind, shown, f"one of {', '.join(names(kind)) or 'none'}, or a path to a .yaml file", referrer)
+        guess = near(name, names(kind))
+        meant = f"did you mean {guess}? " if guess else ""
+        known = ", ".join(names(kind)) or "none"
+        raise _refused(kind, shown, f"{meant}one of {known}, or a path to a .yaml file", referrer)
     return path
 
 

@@ -55,7 +55,8 @@ def test_unknown_name_lists_the_known_ones(shipped: Path) -> None:
     with pytest.raises(ProfileError) as caught:
         profile_files.find("vehicles", "dyr")
     assert (
-        str(caught.value) == "command line: vehicles profile: value 'dyr': one of dry, wet, or a path to a .yaml file"
+        str(caught.value)
+        == "command line: vehicles profile: value 'dyr': did you mean dry? one of dry, wet, or a path to a .yaml file"
     )
 
 

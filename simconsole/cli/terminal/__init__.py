@@ -1,0 +1,1 @@
+"""What commands say of words that they do not know."""
