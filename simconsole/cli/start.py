@@ -5,12 +5,12 @@ from typing import Final, NamedTuple
 
 import msgspec
 
-from simconsole.cli.lookup.listing import shipped
 from simconsole.devices.sources.sdl_source import SdlSource
 from simconsole.hud.start_page import Offer, StartPage, opened
 from simconsole.hud.window.start_window import choose, has_display
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load, names
+from simconsole.profiles.files.titles import shipped
 from simconsole.profiles.files.world_files import load_world
 from simconsole.profiles.session import SessionProfile
 from simconsole.profiles.vehicle import TurtlebotProfile

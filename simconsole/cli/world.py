@@ -4,9 +4,9 @@ from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
-from simconsole.cli.lookup.listing import listed, listing_text
 from simconsole.cli.outcome import Outcome, table
 from simconsole.profiles.files.loader import read_bytes
+from simconsole.profiles.files.titles import listed
 from simconsole.profiles.files.world_files import MAX_MAP_BYTES, load_world
 from simconsole.profiles.validation import PROFILE_FILES
 from simconsole.profiles.world import ArenaProfile, RoadsProfile, WorldProfile
@@ -34,7 +34,9 @@ def world(options: Namespace) -> Outcome:
     """
     if options.action == "list":
         worlds = listed("worlds")
-        return Outcome(0, {"worlds": worlds}, listing_text(worlds))
+        return Outcome(
+            0, {"worlds": worlds}, table([(one["name"], f"{one['kind']:<7} {one['title']}") for one in worlds])
+        )
     if options.name is None:
         raise ProfileError(f"command line: WORLD: value missing: what to {options.action}")
     if options.action == "show":

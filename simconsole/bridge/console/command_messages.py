@@ -25,8 +25,8 @@ from simconsole.bridge.console.command_decoder import (
 from simconsole.bridge.console.published_tick import MAP_FRAME, quaternion
 from simconsole.bridge.console.topics import BASE_FRAME
 from simconsole.bridge.messages import Registry
+from simconsole.values.numerics.single_precision import toward_zero
 from simconsole.values.signals import NO_COMMAND, RemoteCommand, RemoteKind
-from simconsole.values.single_precision import toward_zero
 from simconsole.values.state_vector import Snapshot
 from simconsole.values.units import NS_PER_S, tick_time_ns
 

@@ -1,12 +1,10 @@
 """`simconsole list`: the names that commands and profiles take."""
 
 from argparse import Namespace
-from itertools import takewhile
 from typing import Final
 
 from simconsole.cli.outcome import Outcome, table
-from simconsole.profiles import strict_yaml
-from simconsole.profiles.files.loader import names, read_text
+from simconsole.profiles.files.titles import listed
 from simconsole.values.errors import ProfileError, did_you_mean
 
 KINDS: Final = {
@@ -18,7 +16,6 @@ KINDS: Final = {
     "languages": "simconsole drive --language NAME",
 }
 """What can be listed, and what takes such a name."""
-_FOLDERS: Final = {"cockpits": "devices"}
 
 
 def listing(options: Namespace) -> Outcome:
@@ -38,27 +35,3 @@ def listing(options: Namespace) -> Outcome:
 def listing_text(rows: list[dict[str, str]]) -> str:
     """Return rows of `listed` as a table."""
     return table([(row["name"], f"{row['kind']:<7} {row['title']}" if "kind" in row else row["title"]) for row in rows])
-
-
-def listed(kind: str) -> list[dict[str, str]]:
-    """Return name and title of each shipped profile of a kind, of worlds also what kind of world it is."""
-    return [_row(kind, name) for name in shipped(kind)]
-
-
-def shipped(kind: str) -> list[str]:
-    """Return the names of the shipped profiles of a kind; plans of worlds are none."""
-    return [name for name in names(_FOLDERS.get(kind, kind)) if not name.endswith(".plan")]
-
-
-def _row(kind: str, name: str) -> dict[str, str]:
-    text = read_text(_FOLDERS.get(kind, kind), f"{name}.yaml")
-    values = strict_yaml.parse(text, name)
-    assert isinstance(values, dict)
-    title = str(values.get("title") or _first_sentence(text))
-    return {"name": name, "title": title, **({"kind": str(values.get("kind", "course"))} if kind == "worlds" else {})}
-
-
-def _first_sentence(text: str) -> str:
-    """Return what the comment at the head of a profile begins with."""
-    head = [line[1:].strip() for line in takewhile(lambda line: line.startswith("#"), text.splitlines())]
-    return " ".join(head).partition(": ")[0].partition(". ")[0].removesuffix(".")

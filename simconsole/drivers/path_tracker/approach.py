@@ -9,8 +9,8 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simconsole.values.array_functions import exponential
 from simconsole.values.kernels import clip
+from simconsole.values.numerics.array_functions import exponential
 from simconsole.values.units import RAD_PER_DEG
 
 Array = NDArray[np.float64]

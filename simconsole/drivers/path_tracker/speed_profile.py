@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simconsole.drivers.path_tracker.tracker_settings import Comfort
-from simconsole.values.array_functions import cube_root
+from simconsole.values.numerics.array_functions import cube_root
 from simconsole.world.route import Route
 
 Array = NDArray[np.float64]

@@ -6,7 +6,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simconsole.values.array_functions import heading
+from simconsole.values.numerics.array_functions import heading
 
 Array = NDArray[np.float64]
 

@@ -7,8 +7,8 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simconsole.values.array_functions import heading
 from simconsole.values.kernels import Row, kernel
+from simconsole.values.numerics.array_functions import heading
 from simconsole.world.roads.road_map import Array, Lane
 
 CELL_M: Final = 25.0

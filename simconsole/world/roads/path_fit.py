@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simconsole.values.array_functions import heading as heading_of
+from simconsole.values.numerics.array_functions import heading as heading_of
 from simconsole.values.platform import Pose
 from simconsole.world.path_geometry import Piece, travel
 

@@ -12,8 +12,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from simconsole.values.array_functions import cosine as cosine_of
-from simconsole.values.array_functions import sine as sine_of
+from simconsole.values.numerics.array_functions import cosine as cosine_of
+from simconsole.values.numerics.array_functions import sine as sine_of
 from simconsole.values.signals import FAR, SignalState
 from simconsole.world.people.footways import KERB_M
 from simconsole.world.roads.road_map import Array

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from simconsole.values.array_functions import cosine, sine
+from simconsole.values.numerics.array_functions import cosine, sine
 from simconsole.values.trigonometry import direction
 from simconsole.world.roads.road_map import Array
 from simconsole.world.traffic.road_users import Box

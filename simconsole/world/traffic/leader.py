@@ -6,9 +6,9 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from simconsole.values.array_functions import cosine as cosine_of
-from simconsole.values.array_functions import sine as sine_of
 from simconsole.values.kernels import Row, holding, kernel
+from simconsole.values.numerics.array_functions import cosine as cosine_of
+from simconsole.values.numerics.array_functions import sine as sine_of
 from simconsole.values.signals import NO_AHEAD, AheadInput
 from simconsole.values.trigonometry import direction
 from simconsole.world.roads.road_map import Array

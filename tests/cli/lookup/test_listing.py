@@ -4,8 +4,9 @@ import json
 
 import pytest
 
-from simconsole.cli.lookup.listing import KINDS, listed, shipped
+from simconsole.cli.lookup.listing import KINDS
 from simconsole.cli.main import main
+from simconsole.profiles.files.titles import listed, shipped
 
 
 @pytest.mark.parametrize("kind", KINDS)

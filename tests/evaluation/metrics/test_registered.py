@@ -45,7 +45,7 @@ drive = simconsole.load(folder / "stands.yaml").run(duration_s=2.0, out=folder /
 assert drive.metrics["own"] == {"quick": {"standing_s": 2.0, "accel_rms_mps2": None}}, drive.metrics["own"]
 assert main(["report", str(folder / "bundle")]) == 0
 page = (folder / "bundle" / "report.html").read_text()
-assert "<tr><th>quick</th><td>standing_s</td><td class=n>2</td></tr>" in page
+assert "<tr><td>quick</td><td>standing_s</td><td class=n>2</td></tr>" in page
 assert main(["check", str(folder / "scenario.yaml"), "--update-golden"]) == 0
 (folder / "scenario.yaml").write_text(json.dumps({**scenario, "metrics": [{**bounds[0], "max": 1.0, "min": 0.0}]}))
 assert main(["check", str(folder / "scenario.yaml")]) == 1

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from simconsole.values.array_functions import cosine, cube_root, exponential, heading, sine
+from simconsole.values.numerics.array_functions import cosine, cube_root, exponential, heading, sine
 
 
 @pytest.mark.parametrize(

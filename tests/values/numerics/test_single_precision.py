@@ -3,7 +3,7 @@ import struct
 
 import numpy as np
 
-from simconsole.values.single_precision import toward_zero
+from simconsole.values.numerics.single_precision import toward_zero
 
 
 def test_what_a_float32_can_hold_stays() -> None:
