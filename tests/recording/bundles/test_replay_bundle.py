@@ -37,6 +37,7 @@ def test_replay_of_the_demo_finds_every_hash_equal(demo: Demo) -> None:
     assert results(done) == {
         "equal": True,
         "hashes_equal": True,
+        "bit_exact": True,
         "ticks": demo.ticks,
         "digest": demo.results["digest"],
         "differences": [],
