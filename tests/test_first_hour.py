@@ -9,7 +9,7 @@ from tests.pages import prepare, run
 from tests.paths import ROOT
 
 TASKS = re.split(r"^## ", (ROOT / "docs" / "first-hour.md").read_text(), flags=re.MULTILINE)[1:]
-ELSEWHERE = {"simconsole turtlebot --out out/robots": "tests/cli/turtlebot/test_command.py"}
+ELSEWHERE = {"simconsole turtlebot --out out/robots": "tests/cli/turtlebot/test_turtlebot_command.py"}
 """Commands of minutes: the tests that run them."""
 LEAVES = (
     ("out/keys/report.html",),

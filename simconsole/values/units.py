@@ -15,9 +15,9 @@ STANDARD_GRAVITY_MPS2: Final = 9.80665
 NS_PER_S: Final = 1_000_000_000
 
 _UNITS: Final = {
-    "m": "m", "mps": "m/s", "mps2": "m/s^2", "s": "s", "ns": "ns", "ticks": "ticks",
-    "rad": "rad", "radps": "rad/s", "n": "N", "nm": "N m", "nms": "N m s", "nmprad": "N m/rad",
-    "npm": "N/m", "nspm": "N s/m", "kg": "kg", "kgm2": "kg m^2",
+    "m": "m", "mps": "m/s", "mps2": "m/s^2", "mps3": "m/s^3", "s": "s", "ns": "ns", "ticks": "ticks",
+    "rad": "rad", "radps": "rad/s", "n": "N", "nm": "N m", "nms": "N m s", "nmprad": "N m/rad", "nmps": "N m/s",
+    "npm": "N/m", "nspm": "N s/m", "kg": "kg", "kgm2": "kg m^2", "jpkg": "J/kg",
     "deg": "deg", "degps": "deg/s", "kmh": "km/h", "rpm": "1/min",
 }  # fmt: skip
 DISPLAYED: Final[dict[str, tuple[str, float]]] = {
