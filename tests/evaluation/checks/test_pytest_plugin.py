@@ -1,5 +1,6 @@
 """The plugin in a fresh folder, as a lab has it: named in its conftest.py, run by a pytest of its own."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -24,7 +25,10 @@ WRONG = GOOD.replace("duration_s: 1", "duration_s: -1")
 def own_pytest(folder: Path, *arguments: str) -> tuple[int, str]:
     """Run pytest in a lab's folder; return its code and what it says."""
     command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "-p", "no:xdist", *arguments]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    plain = {
+        name: value for name, value in os.environ.items() if name != "PYTEST_ADDOPTS"
+    }  # of the run this is part of
+    done = subprocess.run(command, cwd=folder, env=plain, capture_output=True, text=True, check=False)
     return done.returncode, done.stdout + done.stderr
 
 
