@@ -23,15 +23,15 @@ The command line prints the message on one line and exits with `exit_code`; a tr
 """
 
 import difflib
-from collections.abc import Sequence
+from collections import abc
 
 
-def near(word: str, known: Sequence[str]) -> str:
+def near(word: str, known: abc.Sequence[str]) -> str:
     """Return the known word that was probably meant, "" where none is near."""
     return next(iter(difflib.get_close_matches(word, known, n=1)), "")
 
 
-def did_you_mean(word: str, known: Sequence[str]) -> str:
+def did_you_mean(word: str, known: abc.Sequence[str]) -> str:
     """Return what to say of a word that is none of the known ones: which is near, or all."""
     guess = near(word, known)
     return f"did you mean {guess}?" if guess else f"one of {', '.join(known) or 'none'}"
