@@ -51,6 +51,9 @@ class ForceFeedback(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     friction_nm: Torque = 0.1
     standstill_friction_nm: Torque = 0.5
     fade_kmh: Annotated[float, Meta(ge=0.5, le=50.0)] = 5.0  # below it the car's torque fades, friction grows
+    # A spring to the middle for a vehicle whose tyres pull the wheel nowhere; it fades as the car's torque does.
+    centring_spring_nm_per_rad: Annotated[float, Meta(ge=0.0, le=20.0)] = 0.0
+    centring_spring_most_nm: Torque = 2.5
     road_texture_nm: Annotated[float, Meta(ge=0.0, le=0.5)] = 0.04
     end_stop_nm_per_rad: Annotated[float, Meta(ge=0.0, le=200.0)] = 25.0
     end_stop_margin_deg: Annotated[float, Meta(ge=0.0, le=90.0)] = 20.0  # before the wheel's own lock

@@ -63,6 +63,7 @@ class RimStiffness(NamedTuple):
     at_36mps: float
     at_48mps: float
     relaxation_m: float  # length over which the front tyres answer
+    pulls: float  # 1: the tyres pull the wheel to the middle; 0: they pull it nowhere
 
 
 NO_STIFFNESS: Final = RimStiffness(*(0.0,) * len(RimStiffness._fields))

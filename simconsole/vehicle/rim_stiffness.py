@@ -41,4 +41,5 @@ def rim_stiffness(profile: VehicleProfile) -> RimStiffness:
         at_36mps=slope(36.0),
         at_48mps=slope(48.0),
         relaxation_m=1.0 / front.decay_y_per_m,
+        pulls=float(moment_nm > 0.0),
     )

@@ -144,7 +144,7 @@ class Released(NamedTuple):
     torque_nm: np.ndarray
     share: float
     swings_deg: list[float]  # from extreme to extreme
-    friction_band_deg: float  # up to which friction holds it; without trail, wherever it was let go of
+    friction_band_deg: float  # up to which friction holds it
 
 
 def let_go(vehicle: str, start: Bend, true: ForceFeedback, found: ForceFeedback, seconds: float = 6.0) -> Released:
@@ -170,11 +170,10 @@ def let_go(vehicle: str, start: Bend, true: ForceFeedback, found: ForceFeedback,
     share = snapshot.torque.car_share
     dry_nm = found.motor.friction_nm + found.friction_nm
     assert isinstance(session.vehicle, CarProfile)
-    trail_m = session.vehicle.steering.caster_trail_m + session.vehicle.steering.pneumatic_trail_m
-    stiff = rim_stiffness(session.vehicle).at_12mps * found.car_share * share
-    # Tyres without trail pull the wheel nowhere: it rests where it was let go of, and no further out.
-    band = math.degrees(dry_nm / stiff) if trail_m and stiff else math.degrees(abs(start.hand_rad))
-    return Released(np.array(rads), np.array(torques), share, swings(np.degrees(rads)), band)
+    rim = rim_stiffness(session.vehicle)
+    pull = rim.at_12mps if rim.pulls else found.centring_spring_nm_per_rad
+    band_deg = math.degrees(dry_nm / (pull * found.car_share * share))
+    return Released(np.array(rads), np.array(torques), share, swings(np.degrees(rads)), band_deg)
 
 
 def swings(angle_deg: np.ndarray, least_deg: float = 0.3) -> list[float]:

@@ -15,6 +15,7 @@ def test_car_without_trail_feels_its_own_friction() -> None:
     """0.25 N m of it, over a short way: Dahl's spring."""
     found = rim_stiffness(load_vehicle("commonroad_bmw320i"))
     assert found[:5] == pytest.approx((0.25 * 296.03 / 15.5,) * 5, rel=1e-3)
+    assert found.pulls == 0.0
 
 
 @pytest.mark.parametrize("name", ["hatchback", "light_van"])
@@ -22,3 +23,4 @@ def test_cars_grow_firmer_with_speed(name: str) -> None:
     found = rim_stiffness(load_vehicle(name))
     assert 1.0 < found.at_0mps <= found.at_12mps <= found.at_24mps <= found.at_36mps <= found.at_48mps < 150.0
     assert 0.1 < found.relaxation_m < 1.0
+    assert found.pulls == 1.0

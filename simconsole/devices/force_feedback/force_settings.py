@@ -34,6 +34,8 @@ class ForceSettings(NamedTuple):
     pipe_share: float  # of the way from cell to cell in one tick
     pipe_cell_s: float
     car_share: float
+    centring_spring_nm_per_rad: float  # 0 where the car's own tyres pull the wheel to the middle
+    centring_spring_most_nm: float
     damping_nms: float
     friction_nm: float
     standstill_friction_nm: float
@@ -59,7 +61,7 @@ class ForceSettings(NamedTuple):
     observer_accel_per_s2: float
     resting_hands_nm: float
     hands_on_nm: float
-    rim_0mps_nm_per_rad: float  # the car's stiffness about the middle, at the hand wheel, by speed
+    rim_0mps_nm_per_rad: float  # stiffness about the middle, at the hand wheel, by speed: the car's, or the spring's
     rim_12mps_nm_per_rad: float
     rim_24mps_nm_per_rad: float
     rim_36mps_nm_per_rad: float
@@ -94,6 +96,8 @@ def force_settings(
     delay_s = force.motor.delay_s + max(0.0, 0.5 * (1.0 / force.update_hz - tick_s))
     cells = min(PIPE_CELLS, round(delay_s * tick_hz))
     pole = math.exp(-OBSERVER_RADPS * tick_s)
+    spring = 0.0 if rim.pulls else force.centring_spring_nm_per_rad
+    weaves = 0.0 if spring else 1.0  # the middle of a spring stands still, however the car turns
     return ForceSettings(
         max_torque_nm=force.max_torque_nm,
         inertia_kgm2=force.motor.inertia_kgm2,
@@ -104,6 +108,8 @@ def force_settings(
         pipe_share=cells * tick_s / delay_s if cells else 1.0,
         pipe_cell_s=delay_s / cells if cells else 0.0,
         car_share=force.car_share,
+        centring_spring_nm_per_rad=spring,
+        centring_spring_most_nm=force.centring_spring_most_nm,
         damping_nms=force.damping_nms,
         friction_nm=force.friction_nm,
         standstill_friction_nm=force.standstill_friction_nm,
@@ -129,15 +135,15 @@ def force_settings(
         observer_accel_per_s2=(1.0 - pole) * (1.0 - pole) * (1.0 - pole) / (tick_s * tick_s),
         resting_hands_nm=force.resting_hands_nm,
         hands_on_nm=force.hands_on_nm,
-        rim_0mps_nm_per_rad=rim.at_0mps,
-        rim_12mps_nm_per_rad=rim.at_12mps,
-        rim_24mps_nm_per_rad=rim.at_24mps,
-        rim_36mps_nm_per_rad=rim.at_36mps,
-        rim_48mps_nm_per_rad=rim.at_48mps,
+        rim_0mps_nm_per_rad=rim.at_0mps + spring,
+        rim_12mps_nm_per_rad=rim.at_12mps + spring,
+        rim_24mps_nm_per_rad=rim.at_24mps + spring,
+        rim_36mps_nm_per_rad=rim.at_36mps + spring,
+        rim_48mps_nm_per_rad=rim.at_48mps + spring,
         relaxation_m=rim.relaxation_m,
         rate_loop_per_s=RATE_PHASE / (delay_s + tick_s),
         aligning_damping=ALIGNING_DAMPING,
-        return_s=RETURN_S,
-        yaw_damping_s=YAW_DAMPING_S,
+        return_s=weaves * RETURN_S,
+        yaw_damping_s=weaves * YAW_DAMPING_S,
         yaw_slow_s=YAW_SLOW_S,
     )

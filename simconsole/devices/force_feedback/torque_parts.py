@@ -9,7 +9,7 @@ from simconsole.devices.force_feedback.aligning import FAST_MPS, aligning, share
 from simconsole.devices.force_feedback.force_settings import ForceSettings
 from simconsole.devices.force_feedback.guidance import GuidanceReference, guidance
 from simconsole.devices.force_feedback.rim import Rim
-from simconsole.values.kernels import kernel
+from simconsole.values.kernels import clip, kernel
 from simconsole.values.signals import VehicleState
 from simconsole.values.trigonometry import sin
 
@@ -65,6 +65,14 @@ def end_stop(rim: Rim, force: ForceSettings) -> float:
 
 
 @kernel
+def centring_spring(answered_rad: float, force: ForceSettings) -> float:
+    """Return the spring to the middle in N m that stands in for tyres which pull the wheel nowhere."""
+    return clip(
+        -force.centring_spring_nm_per_rad * answered_rad, -force.centring_spring_most_nm, force.centring_spring_most_nm
+    )
+
+
+@kernel
 def road(vehicle: VehicleState, rolling: float, force: ForceSettings) -> float:
     """Return the torque of the road's texture: a function of distance only, so it rests with the car and replays."""
     waves = sin(LONG_WAVE_RADPM * vehicle.distance_m) + sin(SHORT_WAVE_RADPM * vehicle.distance_m)
@@ -110,7 +118,7 @@ def torque_parts(
     bears = share_of(stiff, fast, force)
     felt = by_hand * bears
     car = aligning(
-        felt * force.car_share * rolling * vehicle.hand_wheel_torque_nm,
+        felt * force.car_share * rolling * (vehicle.hand_wheel_torque_nm + centring_spring(answered_rad, force)),
         by_hand * rim.rad - answered_rad,
         swing_radps,
         rim.radps,

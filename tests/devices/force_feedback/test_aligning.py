@@ -18,7 +18,7 @@ from simconsole.profiles.device import CockpitProfile
 from simconsole.values.platform import RimStiffness
 from simconsole.values.signals import VehicleState
 
-STIFF = RimStiffness(5.0, 7.0, 10.0, 14.0, 19.0, relaxation_m=0.3)
+STIFF = RimStiffness(5.0, 7.0, 10.0, 14.0, 19.0, relaxation_m=0.3, pulls=1.0)
 
 
 @pytest.fixture

@@ -17,6 +17,7 @@ from simconsole.devices.force_feedback.torque import (
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load
 from simconsole.values.host.jit import compiled
+from simconsole.values.platform import NO_STIFFNESS
 from simconsole.values.signals import (
     Arbitration,
     DriverInput,
@@ -34,11 +35,13 @@ RATIO, LOCK_RAD, HZ, TICK_S = 15.5, math.radians(36.0), 250, 0.004
 PERSON = DriverInput(*(0.0,) * len(DriverInput._fields))._replace(wheel_validity=float(Validity.LIVE))
 CAR = VehicleState(*(0.0,) * len(VehicleState._fields))._replace(vx_mps=15.0, hand_wheel_torque_nm=-2.0)
 STRAIGHT = Rim(0.0, 0.0)
+PULLING = NO_STIFFNESS._replace(pulls=1.0)
+"""A car whose torque at the rim is given, whatever its stiffness."""
 
 
 @pytest.fixture(scope="module")
 def force() -> ForceSettings:
-    return force_settings(load("devices", "t500rs_th8rs", CockpitProfile), RATIO, LOCK_RAD, HZ)
+    return force_settings(load("devices", "t500rs_th8rs", CockpitProfile), RATIO, LOCK_RAD, HZ, PULLING)
 
 
 class Motor:

@@ -8,8 +8,16 @@ import pytest
 from simconsole.devices.force_feedback.force_settings import ForceSettings, force_settings
 from simconsole.devices.force_feedback.guidance import GuidanceReference
 from simconsole.devices.force_feedback.rim import Rim
-from simconsole.devices.force_feedback.torque_parts import TorqueParts, end_stop, servo, soft_clip, torque_parts
+from simconsole.devices.force_feedback.torque_parts import (
+    TorqueParts,
+    centring_spring,
+    end_stop,
+    servo,
+    soft_clip,
+    torque_parts,
+)
 from simconsole.profiles.device import CockpitProfile
+from simconsole.values.platform import NO_STIFFNESS
 from simconsole.values.signals import VehicleState
 
 CAR = VehicleState(*(0.0,) * len(VehicleState._fields))._replace(vx_mps=15.0, hand_wheel_torque_nm=-2.0)
@@ -64,3 +72,14 @@ def test_soft_clip_is_monotone_bounded_odd_and_smooth(force: ForceSettings) -> N
 def test_servo_pulls_towards_the_target(force: ForceSettings) -> None:
     assert servo(Rim(0.1, 0.0), STRAIGHT, force) == pytest.approx(1.8)
     assert servo(Rim(0.0, 1.0), Rim(0.0, 1.0), force) == 0.0
+
+
+def test_spring_to_the_middle_is_for_tyres_that_pull_nowhere(force: ForceSettings, t500: CockpitProfile) -> None:
+    assert t500.force_feedback is not None
+    spring = t500.force_feedback.centring_spring_nm_per_rad
+    assert force.centring_spring_nm_per_rad == spring > 0.0
+    at_nm = [centring_spring(rad, force) for rad in (-9.0, -0.1, 0.0, 0.1, 9.0)]
+    assert at_nm == pytest.approx([2.5, 0.1 * spring, 0.0, -0.1 * spring, -2.5])
+    pulled = force_settings(t500, 15.5, math.radians(36.0), 250, NO_STIFFNESS._replace(pulls=1.0))
+    assert centring_spring(0.1, pulled) == 0.0
+    assert force.rim_12mps_nm_per_rad - pulled.rim_12mps_nm_per_rad == spring, "it is damped as a car's own stiffness"
