@@ -21,19 +21,31 @@ from simconsole.world.sumo_traffic.engines import missing
 
 def demo(options: Namespace) -> Outcome:
     """Drive the demo session, write report and scene, and print what came of it."""
-    session = load_session("demo")
-    if options.perfect and session.outputs.bridge is not None:
-        bridge = msgspec.structs.replace(session.outputs.bridge, link=LinkProfile())
-        session = msgspec.structs.replace(session, outputs=msgspec.structs.replace(session.outputs, bridge=bridge))
-    if options.sumo:
-        session = _on_sumo(session)
-    if options.realtime:
-        session = override(session, mode={"pacing": "realtime"})
-    resolved = resolve(session)
+    resolved = resolve(demo_session(perfect=options.perfect, sumo=options.sumo, realtime=options.realtime))
     folder = Path(options.out) if options.out else Path("out") / time.strftime("demo-%Y%m%d-%H%M%S")
     with Progress("driving", route_length_m(resolved.world)) as progress:
         result = drive(resolved, folder, show=progress.show)
     return finish(result, packed=not options.no_pack)
+
+
+def demo_session(*, perfect: bool = False, sumo: bool = False, realtime: bool = False) -> SessionProfile:
+    """Return the shipped demo as it was asked for.
+
+    Args:
+        perfect: Exact odometry and no delay on the autopilot's link.
+        sumo: SUMO's traffic and signals in place of its own.
+        realtime: As fast as the clock, not as fast as it can be computed.
+
+    Raises:
+        ProfileError: `sumo`, and what it needs is not installed.
+    """
+    session = load_session("demo")
+    if perfect and session.outputs.bridge is not None:
+        bridge = msgspec.structs.replace(session.outputs.bridge, link=LinkProfile())
+        session = msgspec.structs.replace(session, outputs=msgspec.structs.replace(session.outputs, bridge=bridge))
+    if sumo:
+        session = _on_sumo(session)
+    return override(session, mode={"pacing": "realtime"}) if realtime else session
 
 
 def _on_sumo(session: SessionProfile) -> SessionProfile:

@@ -4,11 +4,14 @@ import json
 from collections.abc import Callable
 from itertools import pairwise
 
+import msgspec
 import numpy as np
 import pytest
 
+from simconsole.cli.demo import demo_session
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load
+from simconsole.profiles.link import link_label
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.verification import verify
 from simconsole.recording.reading import LogTable
@@ -201,3 +204,16 @@ def test_the_cockpit_is_live_throughout(table: LogTable) -> None:
         assert table.column(f"driver.{part}_validity")[-1] == Validity.LIVE, part
         assert not (table.column(f"driver.{part}_validity") > float(Validity.LIVE)).any(), part
     assert not (table.column("events.events").astype(int) & int(Event.EMERGENCY_STOP)).any()
+
+
+def test_perfect_takes_noise_and_delay_from_the_link_and_nothing_else() -> None:
+    usual, perfect = (demo_session(perfect=exact).outputs.bridge for exact in (False, True))
+    assert usual is not None
+    assert perfect is not None
+    assert link_label(usual.link) != link_label(perfect.link) == "perfect odometry, no delay"
+    assert msgspec.structs.replace(perfect, link=usual.link) == usual
+    rest = [
+        msgspec.structs.replace(session, outputs=msgspec.structs.replace(session.outputs, bridge=None))
+        for session in (demo_session(), demo_session(perfect=True))
+    ]
+    assert rest[0] == rest[1]
