@@ -53,6 +53,23 @@ def vertices(corners: Array, normals: Array, colour: Colour, material: Material 
     return made
 
 
+def indexed(mesh: Vertices) -> tuple[Vertices, NDArray[np.uint32]]:
+    """Return a mesh's different vertices, in the order of the mesh, and for each of its corners which one it is.
+
+    Corners that triangles share are then worked out once, not for each triangle.
+    """
+    if len(mesh) == 0:
+        return mesh, np.zeros(0, np.uint32)
+    words = mesh.view("<u4").reshape(len(mesh), -1)
+    order = np.lexsort(words.T)
+    differs = (words[order[1:]] != words[order[:-1]]).any(axis=1)
+    group = np.zeros(len(mesh), np.int64)
+    group[order] = np.concatenate(((0,), np.cumsum(differs)))
+    first = np.minimum.reduceat(order, np.concatenate(((0,), np.flatnonzero(differs) + 1)))
+    kept = np.sort(first)
+    return mesh[kept], np.searchsorted(kept, first[group]).astype(np.uint32)
+
+
 def facets(corners: Array, colour: Colour, material: Material = Material.PLAIN) -> Vertices:
     """Return triangles [N, 3, 3] with the normal of each, anticlockwise seen from its outer side."""
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from simconsole.hud.driver_view.camera import Camera, rotation
 from simconsole.hud.driver_view.light import Light, reach_m, shadow_matrix
-from simconsole.hud.driver_view.mesh import Vertices
+from simconsole.hud.driver_view.mesh import Vertices, indexed
 from simconsole.hud.driver_view.motion import ShownVehicle
 from simconsole.hud.driver_view.other_people import person, person_model
 from simconsole.hud.driver_view.other_vehicles import bodies, meshes, model, paint_of
@@ -274,14 +274,12 @@ class Renderer:
         """Put a mesh on the card."""
         if len(mesh) == 0:
             return _Drawn(None, None, 0)  # type: ignore[arg-type]
-        buffer = self._context.buffer(mesh.tobytes())
-        content = "3f4 4f1 4f1"
-        surface = self._context.vertex_array(
-            self._surface, [(buffer, content, "in_position", "in_normal", "in_colour")]
-        )
+        corners, indices = (self._context.buffer(part.tobytes()) for part in indexed(mesh))
+        content = [(corners, "3f4 4f1 4f1", "in_position", "in_normal", "in_colour")]
+        surface = self._context.vertex_array(self._surface, content, indices)
         shadow = None
         if self._quality.shadows:
-            shadow = self._context.vertex_array(self._shadow, [(buffer, "3f4 8x1", "in_position")])
+            shadow = self._context.vertex_array(self._shadow, [(corners, "3f4 8x1", "in_position")], indices)
         return _Drawn(surface, shadow, len(mesh))
 
 

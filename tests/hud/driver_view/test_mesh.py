@@ -10,6 +10,7 @@ from simconsole.hud.driver_view.mesh import (
     box,
     cone,
     facets,
+    indexed,
     left_of,
     prism,
     quads,
@@ -17,6 +18,7 @@ from simconsole.hud.driver_view.mesh import (
     ring,
     wheel,
 )
+from tests.samples import Sample
 
 GREY = (120, 120, 120)
 
@@ -70,3 +72,12 @@ def test_a_line_with_a_repeated_point_has_a_direction_everywhere() -> None:
 
 def test_quads_are_two_triangles_each() -> None:
     assert len(quads(np.array([((0.0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0))]), GREY)) == 6
+
+
+def test_indexed_mesh_has_each_corner_once_and_draws_the_same(sample: Sample) -> None:
+    corners = np.random.default_rng(sample.seed).integers(0, 3, (200, 3, 3)).astype(float)
+    mesh = facets(corners, (10, 20, 30))
+    kept, indices = indexed(mesh)
+    assert (kept[indices] == mesh).all()
+    assert len(kept) == len({vertex.tobytes() for vertex in mesh}) < len(mesh)
+    assert (np.diff(np.unique(indices, return_index=True)[1]) > 0).all(), "in the order of the mesh"
