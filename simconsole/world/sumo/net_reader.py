@@ -15,6 +15,8 @@ from simconsole.world.sumo.xml_guard import Element, read_elements, shown
 
 MAX_TOLD: Final = 100
 """Elements that a report names one by one."""
+MAX_NAMES: Final = 10
+"""Names of elements that it counts."""
 
 _UNDERSTOOD: Final = ("location", "edge", "junction", "connection", "tlLogic", "roundabout")
 _CHILDREN: Final = {"edge": ("lane",), "tlLogic": ("phase",), "junction": ("request",)}
@@ -67,16 +69,19 @@ class _Reading:
             self._read(element)
         report = MapReport((), tuple(self._skipped))
         if more := sum(self._left_out.values()) - len(self._skipped):
-            names = ", ".join(f"{count} <{name}>" for name, count in sorted(self._left_out.items()))
+            most = sorted(self._left_out.most_common(MAX_NAMES))
+            names = ", ".join(f"{count} <{shown(name)}>" for name, count in most)
+            names += f" and {len(self._left_out) - MAX_NAMES} other names" if len(self._left_out) > MAX_NAMES else ""
             report = MapReport((), (*report.skipped, Skipped("net", "-", f"{more} more; all in all {names}")))
         return road_map(self._reader.getNet(), self._crossed, report)
 
     def _read(self, element: Element) -> None:
         if element.name in _UNREAD:
             return
+        if element.name not in _UNDERSTOOD:
+            self._leave_out(element, "not an element that is read")
+            return
         try:
-            if element.name not in _UNDERSTOOD:
-                raise Unfit("not an element that is read")
             check(element)
             self._refers(element)
             self._pass_on(element)
@@ -86,7 +91,7 @@ class _Reading:
             self._leave_out(element, f"not understood: {type(error).__name__}: {shown(str(error))}")
 
     def _leave_out(self, element: Element, reason: str) -> None:
-        self._left_out[shown(element.name)] += 1
+        self._left_out[element.name] += 1
         if len(self._skipped) < MAX_TOLD:
             self._skipped.append(Skipped(shown(element.name), str(element.line), reason))
 

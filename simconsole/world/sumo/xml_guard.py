@@ -83,23 +83,25 @@ class _Reader:
         raise self._refused("!ENTITY", "refused: a map without document type and entities")
 
     def _start(self, name: str, attributes: dict[str, str]) -> None:
-        self._depth += 1
+        depth = self._depth = self._depth + 1
         self._elements += 1
-        if self._depth > self._most_depth:
+        if depth > self._most_depth:
             raise self._refused(name, f"nested more than {self._most_depth} deep: at most {self._most_depth}")
         if self._elements > MAX_ELEMENTS:
             raise self._refused(name, f"more than {MAX_ELEMENTS} elements: at most {MAX_ELEMENTS}")
         if len(attributes) > MAX_ATTRIBUTES:
             raise self._refused(name, f"{len(attributes)} attributes: at most {MAX_ATTRIBUTES}")
-        self._held = self._held + 1 if self._open else 0
-        if self._held > MAX_CHILDREN:
-            raise self._refused(name, f"more than {MAX_CHILDREN} elements in one: at most {MAX_CHILDREN}")
-        if self._depth == 1:
+        if depth == 1:
             if name != self._root:
                 raise self._refused(name, f"value {shown(name)}: <{self._root}> as the first element")
             return
         element = Element(name, self.parser.CurrentLineNumber, attributes, [])
-        if self._open:
+        if depth == 2:
+            self._held = 0
+        else:
+            self._held += 1
+            if self._held > MAX_CHILDREN:
+                raise self._refused(name, f"more than {MAX_CHILDREN} elements in one: at most {MAX_CHILDREN}")
             self._open[-1].children.append(element)
         self._open.append(element)
 

@@ -84,6 +84,8 @@ def test_report_stays_readable() -> None:
     skipped = read_net(content, "f.net.xml").report.skipped
     assert len(skipped) == MAX_TOLD + 1
     assert skipped[-1].reason == f"{5000 - MAX_TOLD} more; all in all 5000 <odd>"
+    many = changed("</net>", "".join(f"<odd{number}/>" for number in range(5000)) + "</net>")
+    assert len(read_net(many, "f.net.xml").report.skipped[-1].reason) < 300
 
 
 def test_map_without_a_lane_for_cars_is_refused() -> None:
