@@ -34,8 +34,8 @@ def answer(message: Any) -> None:
     rate = pursuit.turn_rate(position["x"], position["y"], 2.0 * math.atan2(turn["z"], turn["w"]))
     header = {"stamp": message["header"]["stamp"], "frame_id": "base_link"}
     twist = {"linear": {"x": SPEED_MPS, "y": 0.0, "z": 0.0}, "angular": {"x": 0.0, "y": 0.0, "z": rate}}
+    answers += 1  # before it is sent: the console may end the drive by the last one, and this program with it
     commands.publish({"header": header, "twist": twist})
-    answers += 1
     if answers in (10, 30, 50):  # granted to who commands already
         requests.publish({"data": "autonomous"})
 
