@@ -18,6 +18,7 @@ class CanProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """
 
     interface: Interface = "udp_multicast"
+    """Back end of python-can that the bus is reached through; those of vendors need the vendor's driver."""
     channel: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.:/-]{0,127}$")] = "239.74.163.2"
     """What the back end calls a channel: a multicast group (IPv4), can0, PCAN_USBBUS1, 0."""
     port: Annotated[int, Meta(ge=1024, le=65_535)] = 43_113
@@ -33,5 +34,6 @@ class CanProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     invalid_max: Annotated[int, Meta(ge=1, le=100)] = 5
     """After so many bad frames in a row the counter is taken anew from the last (opendbc: 5 wrong counters)."""
     retry_first_s: Annotated[float, Meta(ge=1.0, le=30.0)] = 1.0
+    """A bus that went off is opened again after this time, then after twice as long each time, up to `retry_last_s`."""
     retry_last_s: Annotated[float, Meta(ge=1.0, le=30.0)] = 30.0
-    """A bus that went off is opened again after the first time, then after twice as long each, up to the last."""
+    """Longest wait from one try to open a lost bus to the next."""

@@ -17,7 +17,7 @@ from simconsole.cli.progress import Progress
 from simconsole.evaluation.robots.mission_figure import mission_svg
 from simconsole.evaluation.robots.mission_result import MissionResult, mission_result
 from simconsole.processes.lifetimes import ATTACHED, end, spawn
-from simconsole.profiles.vehicle import OdometryErrors, TurtlebotProfile
+from simconsole.profiles.parts.turtlebot import OdometryErrors, TurtlebotProfile
 from simconsole.recording.bundles.manifest import read_manifest
 from simconsole.session.fleet.fleet_drive import drive_fleet
 from simconsole.session.fleet.members import members

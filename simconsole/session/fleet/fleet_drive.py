@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from simconsole.processes.lifetimes import Interrupt, remove_half_made, undone
 from simconsole.processes.shared_memory import sweep
-from simconsole.profiles.vehicle import TurtlebotProfile
+from simconsole.profiles.parts.turtlebot import TurtlebotProfile
 from simconsole.recording.bundles.bundle import BundleWriter
 from simconsole.recording.bundles.manifest import Manifest
 from simconsole.recording.bundles.provenance import NOTHING_GIVEN, Given

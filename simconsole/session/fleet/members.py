@@ -6,8 +6,9 @@ from typing import Final
 import msgspec
 
 from simconsole.profiles.bridge import BridgeProfile
+from simconsole.profiles.parts.turtlebot import TurtlebotProfile
 from simconsole.profiles.session import Devices, PlatformSection, SessionProfile, Start
-from simconsole.profiles.vehicle import TurtlebotProfile, VehicleProfile
+from simconsole.profiles.vehicle import VehicleProfile
 from simconsole.profiles.world import ArenaProfile, WorldProfile
 from simconsole.session.resolution import with_start
 from simconsole.tick.assembly import ResolvedSession

@@ -16,7 +16,8 @@ from simconsole.bridge.console.published_tick import (
 )
 from simconsole.bridge.messages import Registry
 from simconsole.profiles.bridge import BridgeProfile
-from simconsole.profiles.vehicle import TurtlebotProfile, VehicleProfile
+from simconsole.profiles.parts.turtlebot import TurtlebotProfile
+from simconsole.profiles.vehicle import VehicleProfile
 from simconsole.values.draws import Channel, normal
 from simconsole.values.kernels import Row
 from simconsole.values.layout import read

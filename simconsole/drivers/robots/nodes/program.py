@@ -21,7 +21,7 @@ from simconsole.drivers.robots.nodes.team_program import drive_team
 from simconsole.processes.lifetimes import ATTACHED, follow_parent
 from simconsole.profiles.files.vehicle_files import load_vehicle
 from simconsole.profiles.files.world_files import load_world
-from simconsole.profiles.vehicle import TurtlebotProfile
+from simconsole.profiles.parts.turtlebot import TurtlebotProfile
 from simconsole.profiles.world import ArenaProfile
 from simconsole.values.errors import ProfileError, SimConsoleError
 from simconsole.values.host.jit import compiled

@@ -18,7 +18,7 @@ from simconsole.drivers.robots.navigation.navigator import Navigator
 from simconsole.drivers.robots.navigation.robot_shape import shape_of
 from simconsole.drivers.robots.nodes.fleet_program import Robot, run
 from simconsole.profiles.files.vehicle_files import load_vehicle
-from simconsole.profiles.vehicle import TurtlebotProfile
+from simconsole.profiles.parts.turtlebot import TurtlebotProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.host.jit import compiled
 from simconsole.world.tools.ros_maps import write_grid
