@@ -120,7 +120,12 @@ def can(commands: Any) -> None:
 
 
 def lookup(commands: Any) -> None:
-    """Add list."""
+    """Add list and explain."""
     names = "names of sessions, worlds, vehicles, scenarios, cockpits, languages"
     listing = command(commands, "list", "lookup.listing:listing", names)
     listing.add_argument("kind", nargs="?", metavar="KIND", help="only those of one kind (default: all)")
+    explain = command(commands, "explain", "lookup.explain:explain", "what a key of a profile means, and its schemas")
+    explain.add_argument(
+        "key", nargs="?", metavar="KEY", help="steering.ratio, session.vehicle, session (default: the kinds of files)"
+    )
+    explain.add_argument("--schemas", metavar="DIR", help="write the JSON Schemas of all kinds of files, for editors")

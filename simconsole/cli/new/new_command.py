@@ -43,6 +43,11 @@ KINDS: Final = {
     "session": {"$name.yaml": texts.SESSION, "test_$name.py": texts.TEST_SESSION},
 }
 """Files of each kind; a vehicle's profile, a world and a golden are made from what is there."""
+SCHEMAS: Final = {
+    **{"driver": "session", "scenario": "scenario", "vehicle": "vehicle", "platform": "vehicle"},
+    **{"world": "plan", "place": "world", "session": "session"},
+}
+"""Of the YAML file of each kind: the name of its schema, as `simconsole explain --schemas` writes it."""
 BEGUN: Final = "hatchback"
 _NAME: Final = re.compile(r"[a-z][a-z0-9_]{0,40}")
 
@@ -64,6 +69,7 @@ def new(options: Namespace) -> Outcome:
     }
     if options.kind == "vehicle":
         files[f"{name}.yaml"] = _vehicle(name)
+    files = {file: _schema_line(options.kind, folder) * file.endswith(".yaml") + text for file, text in files.items()}
     made = [*files, *({"world": [f"{name}.yaml"], "scenario": [f"golden/{name}.csv"]}.get(options.kind, []))]
     for file in made:
         if (folder / file).exists():
@@ -77,6 +83,12 @@ def new(options: Namespace) -> Outcome:
     _complete(options.kind, folder, name)
     paths = sorted(str(folder / file) for file in made)
     return Outcome(0, {"files": paths}, "\n".join((*paths, f"pytest {folder / f'test_{name}.py'}")))
+
+
+def _schema_line(kind: str, folder: Path) -> str:
+    """Return the line that tells editors the schema of a YAML file, where the folder has it; else nothing."""
+    schema = f"schemas/{SCHEMAS.get(kind)}.schema.json"
+    return f"# yaml-language-server: $schema={schema}\n" if (folder / schema).is_file() else ""
 
 
 def _vehicle(name: str) -> str:

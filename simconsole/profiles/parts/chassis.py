@@ -103,8 +103,6 @@ class AxleProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     """Camber that a wheel gains per roll of the body against the axle."""
     rolling_resistance: Annotated[float, Meta(ge=0.0, le=0.1)]
     """Rolling resistance over load."""
-    # Of the links seen from the side: slope of the line from contact patch to pole. Braking lifts the body in front
-    # and pulls it down at the rear by its tangent times the force.
     support_deg: Annotated[float, Meta(ge=-10.0, le=45.0)] = 0.0
     """Slope of the line from contact patch to the links' pole, seen from the side: braking lifts the body in front and
     pulls it down at the rear."""
@@ -137,7 +135,6 @@ class SteeringProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     """How far behind the contact patch's middle the side force acts while it does not slide."""
     caster_trail_m: Annotated[float, Meta(ge=0.0, le=0.2)]
     """How far the contact patch trails the steering axis."""
-    # Moment of a wheel turned on the spot over friction and load: a third of the root of load over inflation (Gough).
     turn_slip_arm_m: Annotated[float, Meta(ge=0.0, le=0.15)] = 0.042
     """Moment of a wheel turned on the spot over friction and load: a third of the root of load over inflation
     (Gough)."""

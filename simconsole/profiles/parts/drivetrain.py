@@ -19,7 +19,6 @@ class AidsProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     """The car has stability control, and it is on."""
     hill_hold: bool
     """The car has hill hold, which keeps the brakes on for a moment when a hill is driven off, and it is on."""
-    # Of the yaw rate that stability control expects; none: from the car's own tyres and steering.
     characteristic_speed_kmh: Annotated[float, Meta(ge=20.0, le=500.0)] | None = None
     """Characteristic speed by which stability control expects a yaw rate; left out, by the car's own tyres and
     steering."""
