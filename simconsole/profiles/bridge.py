@@ -42,9 +42,9 @@ class BridgeLimits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     tokenless_s: Annotated[float, Meta(gt=0.0, le=3600.0)] = 10.0
     """How long a connection that may do nothing is kept for a token to come."""
     message_bytes: Annotated[int, Meta(ge=1024, le=67_108_864)] = 10_000_000
-    """The longest message of a client of role publish or control."""
+    """Longest message of a client whose role is publish or control."""
     viewer_message_bytes: Annotated[int, Meta(ge=1024, le=16_777_216)] = 262_144
-    """The longest message of any other client, where `message_bytes` is not less."""
+    """Longest message of any other client, where `message_bytes` is not less."""
     message_fragments: Annotated[int, Meta(ge=1, le=65_536)] = 256
     """Most pieces that one message of a client may be sent in (rosbridge's `fragment`)."""
     subscriptions: Annotated[int, Meta(ge=1, le=4096)] = 256
@@ -76,9 +76,10 @@ class Ros2Profile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     domain_id: Annotated[int, Meta(ge=0, le=232)] | None = None
     """Number of the ROS 2 domain to join; without it the environment variable ROS_DOMAIN_ID says it."""
     role: Literal["view", "publish", "control"] | None = None
-    """What the nodes of the graph may do; without: what a rosbridge client that shows no token may, at least view."""
+    """What the nodes of the graph may do; left out, what a rosbridge client that shows no token may, at least view."""
     discovery: Literal["localhost", "subnet"] = "localhost"
-    """subnet: nodes of other machines are found too; only with `trust_network`, for a graph shows no tokens."""
+    """Which nodes are found: of this machine, or with `subnet` of others too, which needs `trust_network`, for a graph
+    shows no tokens."""
 
 
 class UpstreamProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -89,9 +90,9 @@ class UpstreamProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     token: Path | None = None
     """File whose content is the token that the other server asks for; without it none is shown."""
     certificate: Path | None = None
-    """A PEM file that a wss:// server is checked against, in place of the system's authorities."""
+    """PEM file that a wss:// server is checked against, in place of the system's authorities."""
     dialect: Literal["ros2", "ros1"] = "ros2"
-    """What the other server's ROS is: how times and headers are spelled for it."""
+    """Which ROS the other server has: how times and headers are spelled for it."""
 
 
 class CameraProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -155,7 +156,7 @@ class BridgeProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     dialect: Literal["ros2", "ros1"] = "ros2"
     """How times and headers are spelled for clients whose URL's path is neither /ros1 nor /ros2."""
     tokens: Path | None = None
-    """A file of lines `ROLE TOKEN`; without one whoever can connect may do everything."""
+    """File of lines `ROLE TOKEN`; left out, whoever can connect may do everything."""
     anonymous: Literal["none", "view", "publish"] = "none"
     """What a client may do that shows no token, where there are tokens."""
     certificate: Path | None = None
@@ -165,30 +166,32 @@ class BridgeProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     trust_network: bool = False
     """Listen on an address that others can reach although there is neither token nor TLS."""
     messages: Path | None = None
-    """A folder of own message types, PACKAGE/msg/NAME.msg, .srv and .action, inside that of the session's profile."""
+    """Folder of own message types, PACKAGE/msg/NAME.msg, .srv and .action, inside that of the session's profile."""
     record: tuple[Annotated[str, Meta(min_length=1, max_length=256)], ...] = ()
-    """Names of topics, * and ? as in file names, that are recorded into topics.mcap in the bundle."""
+    """Names of topics that are recorded into topics.mcap in the bundle; * and ? stand for any characters, as in file
+    names."""
     upstream: UpstreamProfile | None = None
-    """Connect to another rosbridge server as well: every output is published there, every command asked for."""
+    """Another rosbridge server to connect to as well: every output is published there, every command asked for."""
     ros2: Ros2Profile | None = None
     """Join a live ROS 2 graph as well; needs rclpy (extra `ros2`)."""
     sender_clock: Literal["own", "console"] = "own"
-    """console: senders stamp with /clock, so that stamps from the future and stale ones are refused too."""
+    """Whose clock senders stamp with; `console` is /clock, so that stamps from the future and stale ones are refused
+    too."""
     max_stamp_age_ms: Annotated[float, Meta(gt=0.0, le=10_000.0)] = 200.0
     """A command whose stamp is older than this is refused as stale."""
     lease_ms: Annotated[float, Meta(ge=50.0, le=10_000.0)] = 500.0
     """A client that commands keeps the right to do so for this long after its last command; then another may take
     it."""
     ping_interval_s: Annotated[float, Meta(gt=0.0, le=60.0)] = 1.0
-    """A client that sends nothing for so long is sent a ping."""
+    """A client that sends nothing for this long is sent a ping."""
     dead_after_s: Annotated[float, Meta(gt=0.0, le=600.0)] = 3.0
-    """A client is taken for gone when for so long nothing came from it and its machine acknowledged nothing."""
+    """A client is taken for gone when for this long nothing came from it and its machine acknowledged nothing."""
     stall_close_s: Annotated[float, Meta(gt=0.0, le=600.0)] = 10.0
-    """A client that is connected but reads nothing for so long is disconnected."""
+    """A client that is connected but reads nothing for this long is disconnected."""
     external_view: bool = False
     """Publish what a renderer of another program needs to be the driver's eyes, the car's true pose included."""
     camera: CameraProfile | None = None
-    """Publish what a camera on the vehicle sees."""
+    """A camera on the vehicle whose pictures are published; left out, there is none."""
     link: LinkProfile = LinkProfile()
     """Errors, delays and losses on purpose, between the car and whoever commands it here."""
     limits: BridgeLimits = BridgeLimits()

@@ -103,7 +103,7 @@ class Tolerance(Section, frozen=True, kw_only=True):
     """How far columns may be from their golden; with one, the drive's hash need not be equal."""
 
     columns: Annotated[str, Meta(min_length=1, max_length=200)]
-    """A name, or a pattern: `vehicle.*`. Of several that fit, the last counts."""
+    """Name of a column, or a pattern of several: `vehicle.*`. Of several tolerances that fit, the last counts."""
     absolute: Annotated[float, Meta(ge=0.0)] = 0.0
     """How far a value may be from its golden, in the unit of its column."""
     relative: Annotated[float, Meta(ge=0.0)] = 0.0
@@ -145,13 +145,14 @@ class ScenarioProfile(Section, frozen=True, kw_only=True):
     checks: tuple[Check, ...] = ()
     """Bounds on columns of the state vector, each at a time or over one."""
     modes: tuple[ModeName, ...] = ()
-    """The modes of the whole drive, in their order; empty: any."""
+    """Driving modes of the whole drive that are demanded, in their order; left out, any will do."""
     metrics: tuple[MetricCheck, ...] = ()
     """Bounds on figures of the drive's metrics."""
     tolerances: tuple[Tolerance, ...] = ()
     """How far columns may be from their golden; left out, the drive must be equal to the bit."""
     manoeuvre: Manoeuvre | None = None
-    """Drives the car in the place of script and commands, and is judged by `limits` instead of checks and golden."""
+    """A test that drives the car in the place of script and commands, and is judged by `limits` instead of checks and
+    golden."""
     limits: tuple[Limit, ...] = ()
     """Bounds on the characteristic values of the `manoeuvre`."""
     golden_hz: Literal[1, 2, 5, 10, 25, 50] = 2

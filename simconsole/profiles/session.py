@@ -75,16 +75,17 @@ class PlatformSection(Section, frozen=True, kw_only=True):
     """One of several platforms of a session."""
 
     name: Annotated[str, Meta(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,31}$")]
-    """Its namespace: topics are /NAME/..., frames NAME/...; and its folder in the bundle."""
+    """Namespace of the platform: its topics are /NAME/..., its frames NAME/..., and NAME is its folder in the
+    bundle."""
     vehicle: ProfileName | None = None
     """Vehicle of this platform; left out, that of the scenario."""
     start: Start | None = None
-    """Without it the arena's start of its name, or of its number; on another world the beginning of the route, and 15 m
-    further along it for each platform before this one."""
+    """Where the platform stands at first. Left out, at the arena's start of its name or of its number; on another world
+    at the beginning of the route, 15 m further along it for each platform before this one."""
     driver: DriverName | None = None
     """Who sits in this platform; left out, `devices.driver` in the one of `scenario.seat`, and nobody in the others."""
     person: PersonPlan | None = None
-    """What its simulated person does; without it `devices.person`."""
+    """What the platform's simulated person does; left out, what `devices.person` says."""
     autopilot: bool = True
     """Whether `features.autopilot`, where there is one, starts a program for it, too."""
 
@@ -95,14 +96,15 @@ class Scenario(Section, frozen=True, kw_only=True):
     vehicle: ProfileName = "hatchback"
     """Name of a shipped vehicle, or a vehicle's file in the session's folder."""
     start: Start | None = None
-    """Where the world's route begins, unless it says otherwise; without a world at the origin of `map`."""
+    """Where base_link stands at first; left out, at the beginning of the world's route, or without a world at the
+    origin of the map."""
     duration_s: Annotated[float, Meta(gt=0.0, le=86_400.0)] | None = None
     """Simulated time after which the drive ends; left out, it goes on until somebody ends it, or its driver has
     finished."""
     faults: Faults = ()
     """What goes wrong on the way, each with its trigger; none if left out."""
     platforms: Annotated[tuple[PlatformSection, ...], Meta(max_length=16)] = ()
-    """Those that drive together, without a clock; none: one, the scenario's vehicle."""
+    """Vehicles that drive together, with time that no clock paces; left out, there is one, the scenario's vehicle."""
     seat: str | None = None
     """The platform that `devices.driver`, `faults`, display and report belong to; without it the first."""
 
@@ -151,13 +153,16 @@ class Features(Section, frozen=True, kw_only=True):
     aids: Aids = Aids()
     """Driver aids switched on or off for this drive; without it as in the vehicle's profile."""
     commander: Literal["ros", "can"] = "ros"
-    """Whose commands drive where both could: the ROS side's or, on `outputs.can`, the ECU's (requests/commander.py)."""
+    """Whose commands drive where both could: those of the ROS side or, on `outputs.can`, those of the ECU."""
     commands: Annotated[str, Meta(pattern=r"^bag:.{1,1000}$")] | None = None
-    """bag:FILE or bag:FILE:/TOPIC plays recorded commands in place of a controller's, where `mode.pacing` is free."""
+    """Recorded commands that are played in the place of a controller's, as `bag:FILE` or `bag:FILE:/TOPIC`, where
+    `mode.pacing` is free."""
     controller: ControllerChoice | None = None
-    """Called in the place of a program behind the bridge, where `mode.pacing` is lockstep."""
+    """A controller of another package that is called in the place of a program behind the bridge, where `mode.pacing`
+    is lockstep."""
     autopilot: ProfileName | None = None
-    """Start `simconsole autopilot` on this course, as a program of its own that only speaks rosbridge."""
+    """World whose route `simconsole autopilot` drives, started as a program of its own that only speaks rosbridge; left
+    out, none is started."""
     tracker: Literal["preview", "pure_pursuit", "stanley"] = "preview"
     """How the program of `autopilot` steers."""
     speed_advice: bool = False
@@ -202,7 +207,7 @@ class ModeSection(Section, frozen=True, kw_only=True):
     """How time passes: by the clock (`realtime`), as fast as the machine can (`free`), or waiting for each answer of
     the controller (`lockstep`)."""
     start: Literal["at_once", "on_request"] = "at_once"
-    """On request: simulated time stands until an operator starts it, or the wheel's pause button does."""
+    """When simulated time begins: `at_once`, or `on_request` of an operator or of the wheel's pause button."""
     control_period_ms: Annotated[int, Meta(ge=1, le=1000)] = 20
     """In lockstep, from one answer of the controller to the next; rounded down to whole ticks."""
     wait_for_controller_s: Annotated[float, Meta(gt=0.0, le=3600.0)] = 60.0

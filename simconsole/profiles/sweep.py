@@ -16,9 +16,9 @@ class Span(Section, frozen=True, kw_only=True):
     """Equal steps from one value to another, both included."""
 
     first: float = field(name="from")
-    """The first of the values (`from`)."""
+    """First of the values, written as `from`."""
     last: float = field(name="to")
-    """The last of the values (`to`)."""
+    """Last of the values, written as `to`."""
     count: Annotated[int, Meta(ge=2, le=MOST_DRIVES)]
     """How many values there are from the first to the last, both included."""
 

@@ -46,7 +46,8 @@ class SumoProfile(TrafficSection, frozen=True, kw_only=True):
     """SUMO in the place of built-in traffic: its vehicles, people on foot and signals. Needs the extra `sumo`."""
 
     config: Annotated[str, Meta(pattern=r"^.{1,1000}\.sumocfg$")] | None = None
-    """A configuration of SUMO's, beside the session's file, on the world's own map; else demand is made by the seed."""
+    """A configuration of SUMO's, beside the session's file, on the world's own map; left out, the seed makes the
+    demand."""
     vehicles: Annotated[int, Meta(ge=0, le=MOST_OF_SUMO)] = 50
     """How many vehicles SUMO has at a time, where there is no `config`."""
     pedestrians: Annotated[int, Meta(ge=0, le=MOST_OF_SUMO)] = 0
@@ -79,7 +80,8 @@ class TrafficProfile(TrafficSection, frozen=True, kw_only=True):
     lead: LeadVehicle | None = None
     """A vehicle that drives ahead on the route at given speeds; left out, there is none."""
     sumo: SumoProfile | None = None
-    """With it `seed` and `period_ms` are SUMO's, and the rest of this section says nothing."""
+    """SUMO in the place of built-in traffic: `seed` and `period_ms` are then SUMO's, and the rest of this section says
+    nothing. Left out, traffic is built-in."""
 
 
 class Vertex(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

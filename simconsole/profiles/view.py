@@ -23,7 +23,8 @@ class LanguageProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     decimal_mark: Literal[".", ","] = "."
     """What stands between whole and fraction of a number on the display."""
     words: dict[Words, Words] = {}
-    """By the English of `profiles/languages/german.yaml`; what stands in braces is filled in by the display."""
+    """Words of the display by the English of `profiles/languages/german.yaml`; what stands in braces is filled in by
+    the display."""
 
 
 ENGLISH: Final = LanguageProfile(schema=1, title="English")
@@ -40,7 +41,8 @@ class ViewScreen(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """
 
     display: Annotated[int, Meta(ge=0, le=15)] | None = None
-    """On which display it stands; None: on the one with the instruments. The window spans all that are named."""
+    """Number of the display that the screen stands on; left out, the one with the instruments. The window spans all
+    that are named."""
     yaw_deg: Annotated[float, Meta(ge=-180.0, le=180.0)] = 0.0
     """Where the screen's middle is from straight ahead, left-positive."""
     horizontal_fov_deg: Annotated[float, Meta(ge=10.0, le=150.0)] = 62.0
@@ -93,9 +95,10 @@ class DriverViewProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields
     horizon: Annotated[float, Meta(ge=0.1, le=0.9)] = 0.55
     """Height of the level horizon in the picture, as a share of its height."""
     vehicle_model: ModelFile | None = None
-    """The driven vehicle from outside, placed from base_link, without what turns: wheels are drawn as without it."""
+    """Model of the driven vehicle from outside, placed from base_link, without what turns: wheels are drawn as without
+    it."""
     models: Annotated[tuple[ModelFile, ...], Meta(max_length=200)] = ()
-    """What else stands in the world, placed in map."""
+    """Models of what else stands in the world, placed in the map's frame."""
     screens: Annotated[tuple[ViewScreen, ...], Meta(min_length=1, max_length=8)] = (ViewScreen(),)
     """Screens or beamers that the road is shown on; left out, one that fills the picture."""
 
@@ -115,23 +118,24 @@ class HudProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     eye_distance_m: Annotated[float, Meta(gt=0.0, le=20.0)] = 2.2
     """Distance from the driver's eyes to the screen."""
     display: Annotated[int, Meta(ge=0, le=15)] = 0
-    """Which display the window opens on. This, `fullscreen` and `vsync` can be changed by key, which is remembered."""
+    """Number of the display that the window opens on. This, `fullscreen` and `vsync` can be changed by key, which is
+    remembered."""
     fullscreen: bool = False
     """Whether the window fills its display."""
     vsync: bool = True
-    """The road is shown in step with the display; the instruments alone never are."""
+    """Show the road in step with the display; the instruments alone never are."""
     rate_hz: Annotated[int, Meta(ge=1, le=240)] = 60
     """How many pictures are drawn in a second, at most."""
     language: ProfileName = "english"
     """Language of the display alone: topics, metrics, reports and logs keep their words."""
     large_text: bool = False
-    """All text a quarter larger; the instruments without the road leave the pedals out for it."""
+    """Draw all text a quarter larger; the instruments without the road leave the pedals out for it."""
     rpm_max: Annotated[float, Meta(ge=1000.0, le=20000.0)] = 7000.0
     """Engine speed at the end of the dial."""
     rpm_red: Annotated[float, Meta(ge=500.0, le=20000.0)] = 6000.0
     """Engine speed from which the dial is red."""
     view: DriverViewProfile | None = None
-    """The road above the instruments; without it the instruments have the whole screen."""
+    """The road above the instruments; left out, the instruments have the whole screen."""
 
 
 Gain = Annotated[float, Meta(ge=0.0, le=2.0)]
@@ -143,7 +147,7 @@ class SoundProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     device: Annotated[str, Meta(max_length=200)] | None = None
     """A loudspeaker device by its name, as `simconsole devices speakers` says; left out, the system's."""
     speakers: Literal[2, 6] = 6
-    """Six as in 5.1; where the device has two only, the other four are folded in."""
+    """Number of loudspeakers, six as in 5.1; where the device has two only, the other four are folded in."""
     volume: Share = 0.8
     """Loudness of all but warnings, as a share of the full one."""
     warnings: Annotated[float, Meta(ge=0.2, le=1.0)] = 0.9

@@ -132,7 +132,8 @@ class CourseProfile(WorldSection, frozen=True, kw_only=True, tag_field="kind", t
     roundabouts: tuple[Roundabout, ...] = ()
     """Roundabouts on the course; none if left out."""
     ground: CourseGroundProfile | None = None
-    """Without it the ground is flat, and the same beside the road as on it."""
+    """Heights and banks of the course and what is beside it; left out, the ground is flat, and the same beside the road
+    as on it."""
 
 
 EdgeId = Annotated[str, Meta(min_length=1, max_length=200)]
@@ -188,7 +189,8 @@ class RoadsProfile(WorldSection, frozen=True, kw_only=True, tag_field="kind", ta
     route: RouteByEdges | RouteByPlaces | RandomRoute
     """The way that is driven: by edges, by start and goal, or drawn by a seed."""
     ground: GroundProfile | None = None
-    """With it the ground is as high as the map's lanes; without it flat, and the same beside the road as on it."""
+    """How the ground lies: it is as high as the map's lanes; left out, it is flat, and the same beside the road as on
+    it."""
 
 
 Place = Annotated[float, Meta(ge=-500.0, le=500.0)]
@@ -262,7 +264,7 @@ class ArenaProfile(WorldSection, frozen=True, kw_only=True, tag_field="kind", ta
     pillars: Annotated[tuple[Pillar, ...], Meta(max_length=1000)] = ()
     """Round obstacles; none if left out."""
     starts: Annotated[tuple[Spot, ...], Meta(min_length=1, max_length=64)]
-    """Where robots stand at first; a session without a start begins at the first one."""
+    """Places where robots stand at first; a session without a start begins at the first one."""
     targets: Annotated[tuple[Spot, ...], Meta(max_length=64)] = ()
     """Places of the robots' tasks; none if left out."""
     round: Annotated[tuple[ArenaPoint, ...], Meta(min_length=2, max_length=1000)] | None = None

@@ -71,7 +71,7 @@ def bounds_text(info: inspect.Type) -> str:
 
 def _range(ge: float | None, gt: float | None, le: float | None, lt: float | None) -> str:
     if ge is not None and le is not None:
-        return f"{ge:.10g} to {le:.10g}"
-    low = f"{ge:.10g} or more" if ge is not None else f"above {gt:.10g}" if gt is not None else ""
-    high = f"{le:.10g} or less" if le is not None else f"below {lt:.10g}" if lt is not None else ""
+        return f"{ge:.16g} to {le:.16g}"
+    low = f"{ge:.16g} or more" if ge is not None else f"above {gt:.16g}" if gt is not None else ""
+    high = f"{le:.16g} or less" if le is not None else f"below {lt:.16g}" if lt is not None else ""
     return " and ".join(part for part in (low, high) if part)

@@ -20,7 +20,7 @@ class SteeringAssistance(Struct, frozen=True, kw_only=True, forbid_unknown_field
     """At this speed full deflection is half of the angle at standstill. 5.6 with 900 degrees from lock to lock keeps a
     passenger car below 6 m/s2 of side force at any speed."""
     full_s: Annotated[float, Meta(ge=0.1, le=5.0)] = 1.0
-    """From the middle to what the speed allows."""
+    """How long the hand wheel takes from the middle to what the speed allows."""
 
 
 class WheelAxis(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

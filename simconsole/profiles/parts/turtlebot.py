@@ -124,8 +124,8 @@ class TurtlebotProfile(
     lidar: LidarProfile
     """The laser range finder."""
     imu: RobotImuProfile
-    """The inertial measurement unit."""
+    """Noise of the inertial measurement unit and where it is."""
     battery: BatteryProfile
-    """The battery."""
+    """Charge, voltages and power of the robot."""
     odometry: OdometryErrors = OdometryErrors()
     """What is wrong with the odometry; without it, it is exact."""
