@@ -27,9 +27,10 @@ def explain(options: Namespace) -> Outcome:
     if options.key is None or options.key in KINDS:
         return _kinds([options.key] if options.key else list(KINDS))
     found = find_keys(options.key)
-    if len(found) == 1:
-        facts = _facts(found[0])
-        return Outcome(0, {"keys": [facts]}, _key_text(found[0], facts))
+    if len({key.path for key in found}) == 1:  # no more of a path would tell them apart
+        facts = [_facts(key) for key in found]
+        texts = [_key_text(key, known) for key, known in zip(found, facts, strict=True)]
+        return Outcome(0, {"keys": facts}, "\n\n".join(texts))
     rows = table([(key.path + _of(key), _short(key.description)) for key in found])
     text = f"{options.key}: {len(found)} keys\n{rows}\nsimconsole explain with more of a path tells all of one key"
     return Outcome(0, {"keys": [_facts(key) for key in found]}, text)

@@ -1,6 +1,33 @@
 """What may stand at a key, in words: its type and its bounds."""
 
+from typing import Final
+
 from msgspec import inspect
+
+FORMS: Final = {
+    r"^([A-Za-z0-9][A-Za-z0-9_-]{0,63}|.{1,1000}\.ya?ml)$": "a shipped name, or a .yaml file",
+    r"^.{1,1000}\.sumocfg$": "a .sumocfg file",
+    r"^.{1,1000}\.glb$": "a .glb file",
+    r"^.{1,1000}\.xml(\.gz)?$": "an .xml file, or its .xml.gz",
+    r"^[^:\s]{1,253}:[0-9]{1,5}$": "HOST:PORT",
+    r"^wss?://[^/\s]+": "an address that begins with ws:// or wss://",
+    r"^(none|sdl|keyboard|virtual|(trace|script):.+)$": "none, sdl, keyboard, virtual, trace:FILE or script:FILE",
+    r"^bag:.{1,1000}$": "bag:FILE or bag:FILE:/TOPIC",
+    r"^[A-Za-z][A-Za-z0-9_]{0,31}$": "letters, digits and _, a letter first, up to 32",
+    r"^[a-z][a-z0-9_]{0,60}$": "lower-case letters, digits and _, a letter first, up to 61",
+    r"^[A-Za-z][A-Za-z0-9_]*$": "letters, digits and _, a letter first",
+    r"^[A-Za-z_][A-Za-z0-9_.:-]{0,60}$": "letters, digits and _ . : -, a letter or _ first, up to 61",
+    r"^[A-Za-z0-9_-]{1,32}$": "letters, digits, _ and -, up to 32",
+    r"^[A-Za-z0-9][A-Za-z0-9_.:/-]{0,127}$": "letters, digits and _ . : / -, a letter or digit first, up to 128",
+    r"^[A-Za-z0-9.:\[\]-]+$": "a host name or address",
+    r"^(/[A-Za-z][A-Za-z0-9_]*)*$": "empty, or names with a / before each, as /car1",
+    r"^/[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*$": "names with a / before each, as /odom",
+    r"^(https?://[^/\s]+|null|file://|app://[^/\s]*)$": "http://HOST, https://HOST, null, file:// or app://NAME",
+    r"^[0-9a-f]{64}$": "64 hexadecimal digits",
+    r"^[ -~\u00a0-\u00ff]+$": "characters of Western European languages",
+    r"^[a-z][A-Za-z0-9_.]{0,120}$": "a dotted key",
+}
+"""Regular expressions of texts in words."""
 
 
 def type_text(info: inspect.Type) -> str:
@@ -53,9 +80,8 @@ def bounds_text(info: inspect.Type) -> str:
         return _range(info.ge, info.gt, info.le, info.lt)
     if isinstance(info, inspect.StrType):
         length = _range(info.min_length, None, info.max_length, None)
-        return "; ".join(
-            [*([f"{length} characters"] if length else []), *([f"like {info.pattern}"] if info.pattern else [])]
-        )
+        parts = [f"{length} characters" if length else "", FORMS.get(info.pattern or "", "")]
+        return "; ".join(part for part in parts if part)
     if isinstance(info, inspect.VarTupleType | inspect.ListType):
         count = _range(info.min_length, None, info.max_length, None)
         inner = bounds_text(info.item_type)

@@ -31,6 +31,13 @@ def test_a_name_of_several_keys_lists_all(capsys: pytest.CaptureFixture[str]) ->
     assert "\n  session.scenario.platforms[].vehicle  " in said
 
 
+def test_keys_of_one_path_are_told_whole_each(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["explain", "session.scenario.faults.seed"]) == 0
+    said = capsys.readouterr().out
+    assert "  file     session, where its section is noise\n" in said
+    assert "  file     session, where its section is burst\n" in said
+
+
 def test_without_a_key_every_kind_is_told(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["explain"]) == 0
     said = capsys.readouterr().out

@@ -1,12 +1,16 @@
 """Types and bounds in words."""
 
+import json
+import re
 from typing import Annotated, Literal
 
 import msgspec
 import pytest
 from msgspec import Meta
 
-from simconsole.profiles.keys.key_types import bounds_text, type_text
+from simconsole.profiles.keys.key_types import FORMS, bounds_text, type_text
+from simconsole.profiles.keys.kinds import KINDS
+from simconsole.profiles.keys.schemas import schema_of
 
 
 @pytest.mark.parametrize(
@@ -24,9 +28,16 @@ from simconsole.profiles.keys.key_types import bounds_text, type_text
         (tuple[float, float], "list of 2 numbers", ""),
         (dict[str, float], "mapping of numbers", ""),
         (bool, "true or false", ""),
-        (Annotated[str, Meta(pattern="^a$", max_length=3)], "text", "3 or less characters; like ^a$"),
+        (Annotated[str, Meta(pattern="^[0-9a-f]{64}$", max_length=64)], "text",
+         "64 or less characters; 64 hexadecimal digits"),
     ],
 )  # fmt: skip
 def test_a_type_in_words(kind: object, said: str, bounds: str) -> None:
     info = msgspec.inspect.type_info(kind)
     assert (type_text(info), bounds_text(info)) == (said, bounds)
+
+
+def test_every_form_of_a_text_is_said_in_words() -> None:
+    texts = json.dumps([schema_of(kind) for kind in KINDS])
+    used = {json.loads(pattern) for pattern in re.findall(r'"pattern": ("(?:[^"\\]|\\.)*")', texts)}
+    assert used == set(FORMS)
