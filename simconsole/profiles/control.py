@@ -92,8 +92,8 @@ class ControlProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_f
     stop_road_wheel_decay_radps: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)] = 0.005  # angle held, slowly to 0
     """How fast the road-wheel angle that is held in a stop goes back to straight ahead; 0 holds it."""
     stop_steering_apart_mps2: Acceleration = 2.0  # AW on_transition lat_acc_lim: a controller that steers as the person
-    """While the car stops by itself, a controller goes on steering if it corners no further than this from what the
-    person does."""
+    """When the car begins to stop by itself while a person drove, the controller steers the stop if its steering would
+    corner no further than this from the person's."""
     emergency_brake: Annotated[float, msgspec.Meta(ge=0.5, le=1.0)] = 1.0  # full service brake: 6 m/s2 class or more
     """Share of the full service brake in an emergency stop, 0 to 1."""
     hold_brake: Annotated[float, msgspec.Meta(ge=0.1, le=1.0)] = 0.4  # holds a 24 % slope on a car of 6 m/s2 brakes
@@ -195,7 +195,7 @@ class ControlProfile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_f
     reverse_speed_max_mps: Annotated[float, msgspec.Meta(gt=0.0, le=5.0)] = 2.0  # faster: no change of direction
     """Above this speed the last gate passes no change between forwards and reverse."""
     gear_max: Annotated[int, msgspec.Meta(ge=1, le=10)] = 7
-    """Highest gear that the last gate passes."""
+    """Highest gear that the last gate passes where the person shifts."""
     target_speed_max_mps: Annotated[float, msgspec.Meta(gt=0.0, le=100.0)] = 25.0  # AW vel_lim
     """Highest speed that the last gate passes as a target, for vehicles that follow speeds."""
     target_accel_mps2: Acceleration = 5.0  # AW lon_acc_lim

@@ -213,7 +213,7 @@ class ModeSection(Section, frozen=True, kw_only=True):
     wait_for_controller_s: Annotated[float, Meta(gt=0.0, le=3600.0)] = 60.0
     """In lockstep, how long the drive waits for a controller to come before it gives up."""
     answer_timeout_s: Annotated[float, Meta(gt=0.0, le=60.0)] = 2.0
-    """In lockstep, how long the drive waits for one answer of the controller before it goes on without."""
+    """In lockstep, how long the drive waits for one answer of the controller before the controller counts as lost."""
 
     @property
     def control_period_ticks(self) -> int:
