@@ -88,8 +88,18 @@ def _tag(kind: str, path: str, structs: list[inspect.StructType]) -> Key:
     at, tags = f"{path}.{structs[0].tag_field}", tuple(str(struct.tag) for struct in structs)
     text = " ".join(("Which of these it is.", *(tag_text(struct.tag, struct.cls) for struct in structs)))
     default = '"course"' if kind == "world" and path == kind else REQUIRED
-    page = page_of(kind, at.partition(".")[2])
-    return Key(kind, at, "", tags, text, "text", "", f"one of {', '.join(tags)}", default, page)
+    return Key(
+        kind=kind,
+        path=at,
+        owner="",
+        where=tags,
+        description=text,
+        type="text",
+        unit="",
+        bounds=f"one of {', '.join(tags)}",
+        default=default,
+        page=page_of(kind, at.partition(".")[2]),
+    )
 
 
 def tag_text(tag: object, struct: type[Any]) -> str:
