@@ -191,7 +191,8 @@ class BridgeProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     external_view: bool = False
     """Publish what a renderer of another program needs to be the driver's eyes, the car's true pose included."""
     camera: CameraProfile | None = None
-    """A camera on the vehicle whose pictures are published; left out, there is none."""
+    """A camera on the vehicle whose pictures are published, where `mode.pacing` is realtime; left out, there is
+    none."""
     link: LinkProfile = LinkProfile()
     """Errors, delays and losses on purpose, between the car and whoever commands it here."""
     limits: BridgeLimits = BridgeLimits()

@@ -128,7 +128,7 @@ class PersonPlan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """How the person works the cockpit; without it the defaults."""
     along: Literal["straight", "route"] = "straight"
     """Where the person drives to: straight on from the start and from each take-over, or along the route of the
-    session's world."""
+    session's world, which must then have one."""
     seed: Annotated[int, Meta(ge=0, le=2**53)] = 0
     """Which person it is: the number that the errors of eyes and hands along a route are drawn from."""
     road: RoadHabits = RoadHabits()

@@ -104,7 +104,8 @@ class Scenario(Section, frozen=True, kw_only=True):
     faults: Faults = ()
     """What goes wrong on the way, each with its trigger; none if left out."""
     platforms: Annotated[tuple[PlatformSection, ...], Meta(max_length=16)] = ()
-    """Vehicles that drive together, with time that no clock paces; left out, there is one, the scenario's vehicle."""
+    """Vehicles that drive together, with time that no clock paces; left out, there is one, the scenario's vehicle. Only
+    a session that is driven has several, not that of a scenario."""
     seat: str | None = None
     """The platform that `devices.driver`, `faults`, display and report belong to; without it the first."""
 
@@ -153,20 +154,22 @@ class Features(Section, frozen=True, kw_only=True):
     aids: Aids = Aids()
     """Driver aids switched on or off for this drive; without it as in the vehicle's profile."""
     commander: Literal["ros", "can"] = "ros"
-    """Whose commands drive where both could: those of the ROS side or, on `outputs.can`, those of the ECU."""
+    """Whose commands drive where both could: those of the ROS side, or those of the ECU, which needs `outputs.can` and
+    `mode.pacing` realtime or free."""
     commands: Annotated[str, Meta(pattern=r"^bag:.{1,1000}$")] | None = None
     """Recorded commands that are played in the place of a controller's, as `bag:FILE` or `bag:FILE:/TOPIC`, where
     `mode.pacing` is free."""
     controller: ControllerChoice | None = None
     """A controller of another package that is called in the place of a program behind the bridge, where `mode.pacing`
-    is lockstep."""
+    is lockstep; not together with `scenario.platforms`."""
     autopilot: ProfileName | None = None
     """World whose route `simconsole autopilot` drives, started as a program of its own that only speaks rosbridge; left
     out, none is started."""
     tracker: Literal["preview", "pure_pursuit", "stanley"] = "preview"
     """How the program of `autopilot` steers."""
     speed_advice: bool = False
-    """Show the driver how fast to come to the next light at green; the autopilot does so. Needs a bridge."""
+    """Show the driver how fast to come to the next light at green, as the autopilot knows it. Needs
+    `outputs.bridge`."""
 
 
 class Outputs(Section, frozen=True, kw_only=True):
@@ -192,8 +195,8 @@ class Devices(Section, frozen=True, kw_only=True):
     cockpit: ProfileName = "t500rs_th8rs"
     """Name of a shipped cockpit, or a cockpit's file in the session's folder."""
     driver: DriverName = "sdl"
-    """Who sits in the seat: `sdl` for a person at the devices, `keyboard`, `virtual` for a simulated person,
-    `trace:FILE`, `script:FILE`, or `none`."""
+    """Who sits in the seat: `sdl` for a person at the devices, `keyboard` for one at the keyboard, which needs a
+    window, `virtual` for a simulated person, `trace:FILE`, `script:FILE`, or `none`."""
     person: PersonPlan | None = None
     """What the simulated person does where `driver` is virtual; without it they drive the world's route by hand."""
 
@@ -205,7 +208,7 @@ class ModeSection(Section, frozen=True, kw_only=True):
     """Control ticks in a second of simulated time."""
     pacing: Literal["realtime", "free", "lockstep"] = "realtime"
     """How time passes: by the clock (`realtime`), as fast as the machine can (`free`), or waiting for each answer of
-    the controller (`lockstep`)."""
+    the controller (`lockstep`, which needs `outputs.bridge` or `features.controller`)."""
     start: Literal["at_once", "on_request"] = "at_once"
     """When simulated time begins: `at_once`, or `on_request` of an operator or of the wheel's pause button."""
     control_period_ms: Annotated[int, Meta(ge=1, le=1000)] = 20

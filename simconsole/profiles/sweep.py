@@ -42,7 +42,7 @@ class SweepProfile(Section, frozen=True, kw_only=True):
     title: str = ""
     """Name of the sweep for people."""
     sessions: tuple[ProfileName, ...] = ()
-    """Sessions to drive, by shipped names or files in the sweep's folder."""
+    """Sessions to drive, by shipped names or files in the sweep's folder; at least one session or scenario is given."""
     scenarios: tuple[ProfileName, ...] = ()
     """Scenarios to drive, by shipped names or files in the sweep's folder."""
     values: dict[Key, tuple[Value, ...] | Span] = field(default_factory=dict)

@@ -53,7 +53,8 @@ class SumoProfile(TrafficSection, frozen=True, kw_only=True):
     pedestrians: Annotated[int, Meta(ge=0, le=MOST_OF_SUMO)] = 0
     """How many people walk at a time, where there is no `config`; nobody on a map without pavements."""
     backend: Literal["libsumo", "traci"] = "libsumo"
-    """How SUMO runs: in this process, of which there is one (`libsumo`), or in a process of its own (`traci`)."""
+    """How SUMO runs: in this process, which can have one (`libsumo`), or in a process of its own (`traci`), which
+    several drives at a time need."""
     address: Annotated[str, Meta(pattern=r"^[^:\s]{1,253}:[0-9]{1,5}$")] | None = None
     """`HOST:PORT` of a SUMO that waits for clients, only for `traci`; left out, one is started."""
     radius_m: Annotated[float, Meta(ge=20.0, le=2000.0)] = 300.0
@@ -147,7 +148,7 @@ class Actor(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A road user that looks at nobody. Without a place it begins on the world's route, `gap_m` before the vehicle."""
 
     name: Name
-    """What the actor is called, for `of` and `to`."""
+    """What the actor is called, for `of` and `to`; each name once."""
     kind: Literal["car", "van", "pedestrian"] = "car"
     """What the actor is; it says how large it is, unless the keys below do."""
     gap_m: Metres | None = None
