@@ -129,7 +129,8 @@ class ScenarioProfile(Section, frozen=True, kw_only=True):
     session: SessionProfile
     """The session that is driven, with the keys of a session's file."""
     script: ScriptProfile | None = None
-    """A person's acts at times, with `session.devices.driver` none; left out, that key says who drives."""
+    """A person's acts at times, where `session.devices.driver` names no trace, script or simulated person; left out,
+    that key says who drives."""
     remote: tuple[RemoteStep, ...] = ()
     """A controller's commands on the ROS side, at times."""
     events: tuple[EventStep, ...] = ()
