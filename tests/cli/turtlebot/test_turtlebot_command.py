@@ -26,7 +26,7 @@ class Run:
         assert done.returncode == 0, done.stdout + done.stderr
         self.cpu_s = after.children_user + after.children_system - before.children_user - before.children_system
         self.said = results(done)
-        self.text = done.stdout
+        self.text = done.stderr
 
 
 @pytest.fixture(scope="module")
