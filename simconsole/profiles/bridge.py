@@ -6,9 +6,28 @@ from typing import Annotated, Literal
 from msgspec import Meta, Struct, field
 
 from simconsole.profiles.link import LinkProfile
+from simconsole.profiles.validation import worded
 
-TopicName = Annotated[str, Meta(pattern=r"^/[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*$", max_length=256)]
-Namespace = Annotated[str, Meta(pattern=r"^(/[A-Za-z][A-Za-z0-9_]*)*$", max_length=128)]
+TopicName = Annotated[
+    str,
+    worded(
+        r"^/[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*$",
+        "/NAME/NAME, up to 256 characters: each name of letters, digits and _, a letter first",
+        max_length=256,
+    ),
+]
+Namespace = Annotated[
+    str,
+    worded(
+        r"^(/[A-Za-z][A-Za-z0-9_]*)*$",
+        "empty, or /NAME/NAME, up to 128 characters: each name of letters, digits and _, a letter first",
+        max_length=128,
+    ),
+]
+_ORIGIN = worded(
+    r"^(https?://[^/\s]+|null|file://|app://[^/\s]*)$", "http://HOST, https://HOST, app://NAME, file:// or null"
+)
+Origin = Annotated[str, _ORIGIN]
 Rate = Annotated[float, Meta(ge=0.0, le=1000.0)]
 
 
@@ -57,7 +76,9 @@ class BridgeLimits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 class Ros2Profile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The console as a node of a live ROS 2 graph. A graph has no tokens: these keys say what it may do."""
 
-    node: Annotated[str, Meta(pattern=r"^[A-Za-z][A-Za-z0-9_]*$", max_length=64)] = "simconsole"
+    node: Annotated[
+        str, worded(r"^[A-Za-z][A-Za-z0-9_]*$", "letters, digits and _, up to 64, a letter first", max_length=64)
+    ] = "simconsole"
     domain_id: Annotated[int, Meta(ge=0, le=232)] | None = None
     """If missing: ROS_DOMAIN_ID."""
     role: Literal["view", "publish", "control"] | None = None
@@ -69,7 +90,9 @@ class Ros2Profile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
 class UpstreamProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Another rosbridge server that the console joins as a client, under the names its own topics have."""
 
-    url: Annotated[str, Meta(pattern=r"^wss?://[^/\s]+", max_length=1024)]
+    url: Annotated[
+        str, worded(r"^wss?://[^/\s]+", "ws://HOST:PORT or wss://HOST:PORT, up to 1024 characters", max_length=1024)
+    ]
     token: Path | None = None
     """A file with the token to show."""
     certificate: Path | None = None
@@ -118,10 +141,12 @@ class BridgeProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     rename: dict[TopicName, TopicName] = field(default_factory=dict)
     rates_hz: dict[TopicName, Rate] = field(default_factory=dict)
     odometry_frame: Annotated[str, Meta(min_length=1, max_length=64)] = "odom"
-    allowed_origins: tuple[Annotated[str, Meta(pattern=r"^(https?://[^/\s]+|null|file://|app://[^/\s]*)$")], ...] = ()
+    allowed_origins: tuple[Origin, ...] = ()
     """Web pages that may connect beside those of this machine; programs send no origin and always may. `null` and
     `file://` are pages opened from a file, `app://...` those of a desktop program."""
-    allowed_hosts: tuple[Annotated[str, Meta(pattern=r"^[A-Za-z0-9.:\[\]-]+$")], ...] = ()
+    allowed_hosts: tuple[
+        Annotated[str, worded(r"^[A-Za-z0-9.:\[\]-]+$", "a host by name or number, without its port")], ...
+    ] = ()
     """Host names, without port, by which this server may be addressed beside `host` and localhost."""
     dialect: Literal["ros2", "ros1"] = "ros2"
     """How times and headers are spelled for clients whose URL's path is neither /ros1 nor /ros2."""

@@ -4,6 +4,8 @@ from typing import Annotated, Literal
 
 from msgspec import Meta, Struct
 
+from simconsole.profiles.validation import worded
+
 Interface = Literal[
     "virtual", "udp_multicast", "socketcan", "pcan", "vector", "kvaser", "ixxat", "slcan", "gs_usb", "usb2can"
 ]
@@ -18,7 +20,12 @@ class CanProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """
 
     interface: Interface = "udp_multicast"
-    channel: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.:/-]{0,127}$")] = "239.74.163.2"
+    channel: Annotated[
+        str,
+        worded(
+            r"^[A-Za-z0-9][A-Za-z0-9_.:/-]{0,127}$", "letters, digits and _.:/-, up to 128, a letter or digit first"
+        ),
+    ] = "239.74.163.2"
     """What the back end calls a channel: a multicast group (IPv4), can0, PCAN_USBBUS1, 0."""
     port: Annotated[int, Meta(ge=1024, le=65_535)] = 43_113
     """UDP port of udp_multicast; other back ends have none."""

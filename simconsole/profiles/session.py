@@ -10,7 +10,7 @@ from simconsole.profiles.control import ControlProfile
 from simconsole.profiles.faults import Faults
 from simconsole.profiles.person import PersonPlan
 from simconsole.profiles.traffic import TrafficProfile
-from simconsole.profiles.validation import ProfileName
+from simconsole.profiles.validation import ProfileName, RegisteredName, worded
 from simconsole.profiles.view import HudProfile, SceneProfile, SoundProfile
 
 
@@ -51,14 +51,19 @@ class Environment(Section, frozen=True, kw_only=True):
     """Other vehicles, where the world is a road map."""
 
 
-DriverName = Annotated[str, Meta(pattern=r"^(none|sdl|keyboard|virtual|(trace|script):.+)$")]
+DriverName = Annotated[
+    str,
+    worded(
+        r"^(none|sdl|keyboard|virtual|(trace|script):.+)$", "none, sdl, keyboard, virtual, trace:FILE or script:FILE"
+    ),
+]
 """Who sits in a seat."""
 
 
 class PlatformSection(Section, frozen=True, kw_only=True):
     """One of several platforms of a session."""
 
-    name: Annotated[str, Meta(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,31}$")]
+    name: Annotated[str, worded(r"^[A-Za-z][A-Za-z0-9_]{0,31}$", "letters, digits and _, up to 32, a letter first")]
     """Its namespace: topics are /NAME/..., frames NAME/...; and its folder in the bundle."""
     vehicle: ProfileName | None = None
     """Without it that of the scenario."""
@@ -113,7 +118,7 @@ class Aids(Section, frozen=True, kw_only=True):
 class ControllerChoice(Section, frozen=True, kw_only=True):
     """A controller that another package has registered (entry point `simconsole.controllers`)."""
 
-    name: Annotated[str, Meta(pattern=r"^[a-z][a-z0-9_]{0,60}$")]
+    name: RegisteredName
     parameters: dict[str, float] = {}
     """What differs from its own values; each has bounds of its own."""
 
@@ -125,7 +130,7 @@ class Features(Section, frozen=True, kw_only=True):
     aids: Aids = Aids()
     commander: Literal["ros", "can"] = "ros"
     """Whose commands drive where both could: the ROS side's or, on `outputs.can`, the ECU's (requests/commander.py)."""
-    commands: Annotated[str, Meta(pattern=r"^bag:.{1,1000}$")] | None = None
+    commands: Annotated[str, worded(r"^bag:.{1,1000}$", "bag:FILE or bag:FILE:/TOPIC")] | None = None
     """bag:FILE or bag:FILE:/TOPIC plays recorded commands in place of a controller's, where `mode.pacing` is free."""
     controller: ControllerChoice | None = None
     """Called in the place of a program behind the bridge, where `mode.pacing` is lockstep."""

@@ -5,10 +5,10 @@ from typing import Annotated, Literal
 from msgspec import Meta, field
 
 from simconsole.profiles.session import Section
-from simconsole.profiles.validation import ProfileName
+from simconsole.profiles.validation import ProfileName, worded
 
 MOST_DRIVES = 100_000
-Key = Annotated[str, Meta(pattern=r"^[a-z][A-Za-z0-9_.]{0,120}$")]
+Key = Annotated[str, worded(r"^[a-z][A-Za-z0-9_.]{0,120}$", "KEY.KEY of letters, digits and _, up to 121")]
 Value = float | int | bool | str
 
 

@@ -6,6 +6,7 @@ from typing import Annotated, Final, Literal, TypeAlias
 from msgspec import Meta, Struct
 
 from simconsole.profiles.faults import Seconds, Trigger
+from simconsole.profiles.validation import worded
 
 MOST_VEHICLES: Final = 60
 MOST_PARKED: Final = 30
@@ -15,7 +16,9 @@ MOST_ACTORS: Final = 32
 Metres: TypeAlias = Annotated[float, Meta(ge=-1e5, le=1e5)]
 Degrees: TypeAlias = Annotated[float, Meta(ge=-360.0, le=360.0)]
 Kmh: TypeAlias = Annotated[float, Meta(ge=0.0, le=250.0)]
-Name: TypeAlias = Annotated[str, Meta(pattern=r"^[A-Za-z_][A-Za-z0-9_.:-]{0,60}$")]
+Name: TypeAlias = Annotated[
+    str, worded(r"^[A-Za-z_][A-Za-z0-9_.:-]{0,60}$", "letters, digits and _.:-, up to 61, a letter or _ first")
+]
 
 
 class TrafficSection(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -41,7 +44,7 @@ class LeadVehicle(TrafficSection, frozen=True, kw_only=True):
 class SumoProfile(TrafficSection, frozen=True, kw_only=True):
     """SUMO in the place of built-in traffic: its vehicles, people on foot and signals. Needs the extra `sumo`."""
 
-    config: Annotated[str, Meta(pattern=r"^.{1,1000}\.sumocfg$")] | None = None
+    config: Annotated[str, worded(r"^.{1,1000}\.sumocfg$", "a file that ends in .sumocfg")] | None = None
     """A configuration of SUMO's, beside the session's file, on the world's own map; else demand is made by the seed."""
     vehicles: Annotated[int, Meta(ge=0, le=MOST_OF_SUMO)] = 50
     """At a time, without a configuration."""
@@ -49,7 +52,7 @@ class SumoProfile(TrafficSection, frozen=True, kw_only=True):
     """Likewise; nobody on a map without pavements."""
     backend: Literal["libsumo", "traci"] = "libsumo"
     """SUMO in this process, once in each, or in one of its own."""
-    address: Annotated[str, Meta(pattern=r"^[^:\s]{1,253}:[0-9]{1,5}$")] | None = None
+    address: Annotated[str, worded(r"^[^:\s]{1,253}:[0-9]{1,5}$", "HOST:PORT")] | None = None
     """host:port of a SUMO that waits for clients, for traci; else one is started."""
     radius_m: Annotated[float, Meta(ge=20.0, le=2000.0)] = 300.0
     """Who is further from the vehicle is not asked for."""

@@ -6,6 +6,7 @@ from typing import Annotated, Literal, TypeAlias
 import msgspec
 
 from simconsole.profiles.tyre import TirTyre
+from simconsole.profiles.validation import RegisteredName
 from simconsole.values.units import STANDARD_GRAVITY_MPS2
 
 Length: TypeAlias = Annotated[float, msgspec.Meta(ge=0.01, le=10.0)]
@@ -368,7 +369,7 @@ class OwnProfile(
 ):
     """A vehicle that another package has registered (entry point `simconsole.vehicles`), or an FMU (`kind: fmu`)."""
 
-    kind: Annotated[str, msgspec.Meta(pattern=r"^[a-z][a-z0-9_]{0,60}$")]
+    kind: RegisteredName
     parameters: dict[str, float] = {}
     """What differs from its own values; each has bounds of its own."""
     file: Annotated[str, msgspec.Meta(max_length=4096)] | None = None  # beside the profile: an FMU

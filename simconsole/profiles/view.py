@@ -4,9 +4,17 @@ from typing import Annotated, Final, Literal
 
 from msgspec import Meta, Struct
 
-from simconsole.profiles.validation import ProfileName
+from simconsole.profiles.validation import ProfileName, worded
 
-Words = Annotated[str, Meta(min_length=1, max_length=60, pattern=r"^[ -~\u00a0-\u00ff]+$")]
+Words = Annotated[
+    str,
+    worded(
+        r"^[ -~\u00a0-\u00ff]+$",
+        "1 to 60 characters of Western European languages (Latin-1)",
+        min_length=1,
+        max_length=60,
+    ),
+]
 """What the display's typeface can draw: the characters of Western European languages (Latin-1)."""
 
 
@@ -54,7 +62,7 @@ class ModelFile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     Its x axis is that of where it stands, its -z axis the y axis there.
     """
 
-    file: Annotated[str, Meta(pattern=r"^.{1,1000}\.glb$")]
+    file: Annotated[str, worded(r"^.{1,1000}\.glb$", "a file that ends in .glb")]
     x_m: Annotated[float, Meta(ge=-1e5, le=1e5)] = 0.0
     y_m: Annotated[float, Meta(ge=-1e5, le=1e5)] = 0.0
     z_m: Annotated[float, Meta(ge=-1e3, le=1e4)] = 0.0

@@ -10,6 +10,8 @@ from typing import Annotated, Final, Literal
 
 from msgspec import Meta, Struct
 
+from simconsole.profiles.validation import RegisteredName, worded
+
 Metres = Annotated[float, Meta(ge=-1e5, le=1e5)]
 Station = Annotated[float, Meta(ge=0.0, le=1e5)]
 Angle = Annotated[float, Meta(ge=-1e3, le=1e3)]
@@ -105,8 +107,8 @@ class CourseProfile(WorldSection, frozen=True, kw_only=True, tag_field="kind", t
 
 
 EdgeId = Annotated[str, Meta(min_length=1, max_length=200)]
-MapName = Annotated[str, Meta(pattern=r"^.{1,1000}\.xml(\.gz)?$")]
-Digest = Annotated[str, Meta(pattern=r"^[0-9a-f]{64}$")]
+MapName = Annotated[str, worded(r"^.{1,1000}\.xml(\.gz)?$", "a file that ends in .xml or .xml.gz")]
+Digest = Annotated[str, worded(r"^[0-9a-f]{64}$", "a SHA-256 as 64 digits of 0-9a-f")]
 
 
 class MapFile(WorldSection, frozen=True, kw_only=True):
@@ -190,7 +192,7 @@ class Pillar(WorldSection, frozen=True, kw_only=True):
 class Spot(WorldSection, frozen=True, kw_only=True):
     """A place with a heading where a robot shall stand."""
 
-    name: Annotated[str, Meta(pattern=r"^[A-Za-z0-9_-]{1,32}$")]
+    name: Annotated[str, worded(r"^[A-Za-z0-9_-]{1,32}$", "letters, digits, _ and -, up to 32")]
     x_m: Place
     y_m: Place
     yaw_deg: Annotated[float, Meta(ge=-180.0, le=180.0)] = 0.0
@@ -242,7 +244,7 @@ class OwnWorldProfile(WorldSection, frozen=True, kw_only=True, tag_field="kind",
 
     schema: Literal[1]
     title: str
-    name: Annotated[str, Meta(pattern=r"^[a-z][a-z0-9_]{0,60}$")]
+    name: RegisteredName
     parameters: dict[str, float] = {}
     """What differs from its own values; each has bounds of its own."""
 
