@@ -9,11 +9,11 @@ import pytest
 
 from simconsole.cli.arguments.tools import NEW_KINDS
 from simconsole.cli.main import main, parser
+from tests.paths import ROOT
 from tests.ports import free_port
 
 NOT_THERE = "not/there"
 WORDS = {
-    "demo": ("--out", "{file}"),
     "drive": ("{plain}", "--headless", "--driver", "none", "--for", "1", "--out", "{new}"),
     "check": (NOT_THERE,),
     "scenario import": (NOT_THERE,),
@@ -43,7 +43,6 @@ WORDS = {
     "world show": ("urban",),
     "world import": (NOT_THERE,),
     "world export": ("arena", "--out", "{new}"),
-    "bridge serve": ("--for", "0.2", "--port", "{port}"),
     "bridge check": ("{url}",),
     "bridge bench": ("{url}", "--for", "0.01"),
     "bridge cert": ("--out", "{new}"),
@@ -55,20 +54,26 @@ WORDS = {
     **{f"new {kind}": ("evening", "--out", "{new}") for kind in NEW_KINDS},
     **{f"operate {act}": ("--url", "{url}") for act in parser().commands["operate"].commands},
 }
+TRIED_ELSEWHERE = {"demo": "tests/drives/fixtures.py", "bridge serve": "tests/cli/test_rosbridge.py"}
+"""Those that take long, and are run with --json for other tests: `results` there reads all of standard output."""
 
 
 @pytest.fixture
 def places(plain: Path, short: Path, tmp_path: Path) -> dict[str, str]:
-    file = tmp_path / "file"
-    file.touch()
     copy = shutil.copytree(short, tmp_path / "copy")
-    paths = {"plain": plain, "copy": copy, "short": short, "file": file / "in_a_file", "new": tmp_path / "new"}
+    paths = {"plain": plain, "copy": copy, "short": short, "new": tmp_path / "new"}
     port = str(free_port())
     return {**{name: str(path) for name, path in paths.items()}, "port": port, "url": f"ws://127.0.0.1:{port}"}
 
 
 def test_every_command_is_tried() -> None:
-    assert set(WORDS) == {page.prog.removeprefix("simconsole ") for page in parser().pages() if not page.commands}
+    for command, path in TRIED_ELSEWHERE.items():
+        text = (ROOT / path).read_text()
+        assert ", ".join(f'"{word}"' for word in command.split()) in text
+        assert '"--json"' in text
+    assert {*WORDS, *TRIED_ELSEWHERE} == {
+        page.prog.removeprefix("simconsole ") for page in parser().pages() if not page.commands
+    }
 
 
 @pytest.mark.parametrize("command", WORDS)
