@@ -31,7 +31,7 @@ def demo(options: Namespace) -> Outcome:
         session = override(session, mode={"pacing": "realtime"})
     resolved = resolve(session)
     folder = Path(options.out) if options.out else Path("out") / time.strftime("demo-%Y%m%d-%H%M%S")
-    with Progress("driving", route_length_m(resolved.world)) as progress:
+    with Progress("driving", route_length_m(resolved.world), resolved.session.scenario.duration_s) as progress:
         result = drive(resolved, folder, show=progress.show)
     return finish(result, packed=not options.no_pack)
 

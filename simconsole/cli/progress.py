@@ -24,8 +24,10 @@ class Progress:
     With `-v` and no terminal, a line when the work begins; with `-v` always one when it has ended, with its time.
     """
 
-    def __init__(self, what: str, length_m: float = 0.0) -> None:
+    def __init__(self, what: str, length_m: float = 0.0, duration_s: float | None = None) -> None:
+        """Name the work; of a drive the length of its route in m, if it has one, and when it ends in simulated s."""
         self._what = what
+        self._duration_s = duration_s
         self._length_m = length_m
         self._shown = sys.stderr.isatty() and level() is not Talk.QUIET
         self._began_s = time.monotonic()
@@ -58,7 +60,9 @@ class Progress:
             way = f"{vehicle.distance_m:7.1f} m" + (f" of {self._length_m:.0f} m" if self._length_m else "")
             speed = f"{vehicle.vx_mps * KMH_PER_MPS:5.1f} km/h"
             alarm = f"  {RECORDING_FAILED}" if snapshot.recording_failed else ""
-            left = self._left(vehicle.distance_m / self._length_m) if self._length_m else ""
+            shares = [vehicle.distance_m / self._length_m] if self._length_m else []
+            shares += [snapshot.t_s / self._duration_s] if self._duration_s else []
+            left = self._left(max(shares, default=0.0))
             self._write(f"{self._what}: {snapshot.t_s:7.1f} s  {way}  {speed}  {mode_label(float(mode))}{left}{alarm}")
 
     def count(self, done: int, total: int = 0) -> None:

@@ -51,7 +51,8 @@ def _replayed(folder: Path, tolerances: str | None) -> Outcome:
     """Re-simulate what one platform's bundle holds."""
     from simconsole.recording.bundles.replay_bundle import replay_bundle
 
-    result = replay_bundle(folder, read_tolerances(tolerances))
+    with Progress("replaying") as progress:
+        result = replay_bundle(folder, read_tolerances(tolerances), progress.count)
     covered = coverage(folder)
     said = inexact(folder, read_manifest(folder))
     results = {

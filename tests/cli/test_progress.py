@@ -69,6 +69,16 @@ def test_a_line_tells_way_speed_and_mode(monkeypatch: pytest.MonkeyPatch) -> Non
     assert shown[-1] == ""
 
 
+def test_a_drive_that_ends_before_its_route_is_measured_by_its_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = Terminal()
+    monkeypatch.setattr("sys.stderr", terminal)
+    now_s = iter((100.0, 110.0, 110.0))
+    monkeypatch.setattr("simconsole.cli.progress.time", SimpleNamespace(monotonic=lambda: next(now_s)))
+    with Progress("driving", 3000.0, 64.0) as progress:
+        progress.show(snapshot(TICKS_BETWEEN_LOOKS * 125, mode=float(Mode.MANUAL)))
+    assert terminal.getvalue().split("\r\x1b[K")[2].endswith("  50%, 0:10 left")
+
+
 def test_a_line_tells_how_much_of_each_thing_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
     terminal = Terminal()
     monkeypatch.setattr("sys.stderr", terminal)
