@@ -17,15 +17,16 @@ T = TypeVar("T")
 PROFILE_FILES: Final = (".yaml", ".yml")
 
 
-def worded(pattern: str, allowed: str, **lengths: int) -> msgspec.Meta:
+def worded(pattern: str, allowed: str, *, min_length: int | None = None, max_length: int | None = None) -> msgspec.Meta:
     """Return the bounds of a text, and what a message calls them: nobody has to read a pattern.
 
     Args:
         pattern: a regular expression that every such text matches.
         allowed: the same, and the lengths, in words.
-        lengths: `min_length` and `max_length` in characters, where the pattern has none.
+        min_length: in characters, where the pattern says nothing of it.
+        max_length: likewise.
     """
-    return msgspec.Meta(pattern=pattern, extra={"allowed": allowed}, **lengths)
+    return msgspec.Meta(pattern=pattern, min_length=min_length, max_length=max_length, extra={"allowed": allowed})
 
 
 _PROFILE: Final = worded(
@@ -181,7 +182,7 @@ def _allowed(types: list[Any], what: str) -> str:
         return f"{noun}{_bounds(kind)}{or_null}"
     if isinstance(kind, msgspec.inspect.LiteralType):
         return f"one of {', '.join(str(value) for value in kind.values)}{or_null}"
-    texts = [one.extra["allowed"] for one in kinds if isinstance(one, msgspec.inspect.Metadata)]
+    texts = [one.extra["allowed"] for one in kinds if isinstance(one, msgspec.inspect.Metadata) and one.extra]
     if texts and (kind or what.startswith(_OF_A_TEXT)):
         return f"{', or '.join(texts)}{or_null}"
     if isinstance(kind, msgspec.inspect.EnumType):
