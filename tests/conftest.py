@@ -79,7 +79,7 @@ def pytest_runtest_logreport(report: pytest.TestReport) -> None:
     if report.when not in ("setup", "call"):  # a process that died in a test is none of the three
         account.ended.add(report.nodeid)
     for name, value in report.user_properties:
-        if name == memory.KEY and value > (peaks[-1].memory_mb if peaks else 0.0):
+        if name == memory.KEY and isinstance(value, float) and value > (peaks[-1].memory_mb if peaks else 0.0):
             peaks.append(memory.Peak(value, report.nodeid))
 
 
