@@ -82,8 +82,16 @@ def _turtlebot(commands: Any) -> None:
     robots.add_argument(
         "--objective", choices=("sum", "makespan"), default="sum", help="what the allocation makes least (default: sum)"
     )
+    robots.add_argument(
+        "--fail", type=_failure, metavar="NAME@SECONDS", help="this robot fails then: the others do its open tasks"
+    )
     robots.add_argument("--out", metavar="DIR", help="where all goes (default: out/turtlebot-TIME)")
     robots.add_argument("--no-pack", action="store_true", help="leave the logs as they were written")
+
+
+def _failure(text: str) -> tuple[str, float]:
+    name, _, time_s = text.partition("@")
+    return name, number(0.0, 86_400.0, "s")(time_s)
 
 
 def _sweep(commands: Any) -> None:
