@@ -5,6 +5,7 @@ from typing import Annotated, Literal, TypeAlias
 
 import msgspec
 
+from simconsole.profiles.robots.depth_camera_profile import DepthCameraProfile
 from simconsole.profiles.tyre import TirTyre
 from simconsole.values.units import STANDARD_GRAVITY_MPS2
 
@@ -361,6 +362,7 @@ class TurtlebotProfile(
     imu: RobotImuProfile
     battery: BatteryProfile
     odometry: OdometryErrors = OdometryErrors()
+    depth_camera: DepthCameraProfile | None = None
 
 
 class OwnProfile(
