@@ -19,6 +19,7 @@ from simconsole.values.host.jit import plain
 from simconsole.world.arena.arena_world import arena_of
 from simconsole.world.kinds.worlds import open_world
 from tests.bridge.console.robots.test_robot_topics import heard, snapshot
+from tests.bridge.fixtures import Peer
 
 WAFFLE = load("vehicles", "turtlebot3_waffle", TurtlebotProfile)
 TOPICS = (DEPTH_INFO, DEPTH_IMAGE, POINTS)
@@ -34,7 +35,7 @@ def told(*topics: str) -> dict[str, Any]:
 
 
 def test_without_a_rate_there_are_no_pictures() -> None:
-    assert not set(TOPICS) & set(bridge({}).names)
+    assert heard(bridge({}), snapshot(200), *TOPICS, "/odom").keys() == {"/odom"}
 
 
 def test_image_info_and_points_tell_one_picture() -> None:
@@ -63,7 +64,11 @@ def test_image_info_and_points_tell_one_picture() -> None:
 
 
 def test_its_frame_is_told_once_and_looks_ahead() -> None:
-    frames = {one["child_frame_id"]: one for one in told("/tf_static")["/tf_static"]["transforms"]}
+    peer = Peer(bridge({}))
+    peer.send(op="subscribe", topic="/tf_static")
+    peer.bridge.publish(snapshot(0), 0)
+    (static,) = (one["msg"] for one in peer.heard() if one["op"] == "publish")
+    frames = {one["child_frame_id"]: one for one in static["transforms"]}
     turn = frames[OPTICAL_FRAME]["transform"]["rotation"]
     assert math.hypot(*turn.values()) == pytest.approx(1.0)
     assert (turn["x"], turn["y"], turn["z"], turn["w"]) == pytest.approx((-0.5, 0.5, -0.5, 0.5))
