@@ -89,7 +89,7 @@ class Driven:
         return self._recorder.vectors[:, self.console.columns.index(name)]
 
 
-CASES = {
+CASES: dict[str, tuple[Fault, Reason]] = {
     "R01": (kinds.LateCommands(at_s=FAULT_S, by_ms=300), Reason.COMMAND_STALE),
     "R01-delayed": (kinds.DelayedCommands(at_s=FAULT_S, by_ms=300), Reason.COMMAND_STALE),
     "R02": (kinds.Silent(at_s=FAULT_S), Reason.COMMAND_STALE),

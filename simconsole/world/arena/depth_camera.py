@@ -33,7 +33,7 @@ class DepthCamera:
     ) -> None:
         """Cast rays in an arena; other robots are taken to be `others_height_m` high."""
         self.profile = profile
-        heights = [one.height_m for one in (*arena.walls, *arena.pillars)]
+        heights = [*(wall.height_m for wall in arena.walls), *(pillar.height_m for pillar in arena.pillars)]
         self._others_m = min(others_height_m, max(heights))
         levels = sorted({*heights, self._others_m})
         self._levels = [(height_m, ray_grid(outlines_of(arena, height_m))) for height_m in levels]
@@ -86,5 +86,6 @@ class DepthCamera:
 
 def _pixels(profile: DepthCameraProfile) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return how far each column lies to the right of the picture's middle, and each row below it, in pixels."""
-    columns, rows = np.arange(profile.width_px), np.arange(profile.height_px)
-    return columns - 0.5 * (profile.width_px - 1), rows - 0.5 * (profile.height_px - 1)
+    columns = np.arange(profile.width_px, dtype=np.float64) - 0.5 * (profile.width_px - 1)
+    rows = np.arange(profile.height_px, dtype=np.float64) - 0.5 * (profile.height_px - 1)
+    return columns, rows

@@ -85,7 +85,8 @@ def test_points_lie_on_what_was_seen_wherever_the_robot_stands(sample: Sample) -
         ends = draw.uniform(-3.0, 3.0, (2, 2))
         high = float(draw.uniform(0.12, 1.0))
         points = [{"x_m": float(x), "y_m": float(y)} for x, y in ends]
-        pose = Pose(*draw.uniform(-2.0, 2.0, 2).tolist(), float(draw.uniform(-3.0, 3.0)))
+        x_m, y_m, yaw_rad = draw.uniform((-2.0, -2.0, -3.0), (2.0, 2.0, 3.0)).tolist()
+        pose = Pose(x_m, y_m, yaw_rad)
         seen = camera({"points": points, "height_m": high})
         found = seen.points(seen.image(pose)).reshape(-1, 3).astype(np.float64)
         right, down, ahead = found[np.isfinite(found).all(axis=1)].T
