@@ -80,7 +80,7 @@ def _stepped(net: bytes, vehicles: int, period_ms: int, steps: int, backend: str
         heading = math.atan2(to_y - y, to_x - x)
         return Box(x + share * (to_x - x), y + share * (to_y - y), heading, 0.8 * way_m / duration_s, 4.4, 1.8)
 
-    around = Surroundings(road_map=road_map, net=net, legs=(), tick_hz=_HZ, ego=at(0), duration_s=duration_s)
+    around = Surroundings(road_map=road_map, net=net, legs=(), tick_hz=_HZ, egos=(at(0),), duration_s=duration_s)
     traffic = SumoTraffic(profile, around)
     seen, times_ms = 0, []
     try:
