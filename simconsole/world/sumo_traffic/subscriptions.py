@@ -71,6 +71,17 @@ def position_of(found: Mapping[int, Any]) -> tuple[float, float]:
     return float(x), float(y)
 
 
+def motion_of(found: Mapping[int, Any]) -> tuple[float, float, float, float]:
+    """Return where SUMO has a vehicle (m), the way that it heads (degrees, navigational) and its speed (m/s)."""
+    x, y, _ = found[_POSITION3D]
+    return x, y, found[_ANGLE], found[_SPEED]
+
+
+def moved_to(found: Mapping[int, Any], x_m: float, y_m: float, angle_deg: float) -> Mapping[int, Any]:
+    """Return a vehicle at another place in SUMO, as high as it is."""
+    return {**found, _POSITION3D: (x_m, y_m, found[_POSITION3D][2]), _ANGLE: angle_deg}
+
+
 def road_users(
     vehicles: Found,
     people: Found,

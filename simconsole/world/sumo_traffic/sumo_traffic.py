@@ -17,6 +17,7 @@ from simconsole.world.sumo_traffic.demand import demand
 from simconsole.world.sumo_traffic.ego import NO_CHECKS, Ego, is_ours
 from simconsole.world.sumo_traffic.engines import KEY, open_engine, said_by
 from simconsole.world.sumo_traffic.places import Bumper
+from simconsole.world.sumo_traffic.smooth import Smooth
 from simconsole.world.sumo_traffic.subscriptions import Found, Numbers, SignalReader, position_of, road_users
 from simconsole.world.traffic.road_users import CAPACITY, NOBODY, Box
 
@@ -59,6 +60,7 @@ class SumoTraffic:
         self.ego_error_m = 0.0
         several = len(around.egos) > 1
         self._numbers, self._users = Numbers(len(around.egos) if several else 0), [NOBODY] * len(around.egos)
+        self._smooth = Smooth(self._numbers, self.period_s)
         self._crashed: dict[str, float] = {}
         with ExitStack() as stack:
             folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="simconsole-sumo-")))
@@ -141,18 +143,20 @@ class SumoTraffic:
         places = [ego.put(box, self.period_s) for ego, box in zip(self._egos, boxes, strict=True)]
         self._brake()
         self._sumo.simulationStep()
-        self._users = [self._read(ego, place) for ego, place in zip(self._egos, places, strict=True)]
+        seen: list[Found] = [self._sumo.vehicle.getContextSubscriptionResults(ego.name) for ego in self._egos]
+        told = self._smooth.step({name: one[name] for one in seen for name in one if not is_ours(name)})
+        self._users = []
+        for ego, place, found in zip(self._egos, places, seen, strict=True):
+            own = found.get(ego.name)  # off the road it is not among those round it
+            x_m, y_m = self._sumo.vehicle.getPosition(ego.name) if own is None else position_of(own)
+            self.ego_error_m = max(self.ego_error_m, math.hypot(x_m - place.x_m, y_m - place.y_m))
+            self._users.append(self._read(ego, place, {name: told[name] for name in found if name in told}))
         self.signals.take(self._reader.read(self._start_s))
 
-    def _read(self, ego: Ego, place: Bumper) -> Array:
-        """Return who is round an ego after a step; none of ours."""
-        sumo, around = self._sumo, self._around
-        found: Found = sumo.vehicle.getContextSubscriptionResults(ego.name)
-        people: Found = sumo.poi.getContextSubscriptionResults(ego.name)
-        vehicles = {name: values for name, values in found.items() if not is_ours(name)}
-        own = found.get(ego.name)  # off the road it is not among those round it
-        x_m, y_m = sumo.vehicle.getPosition(ego.name) if own is None else position_of(own)
-        self.ego_error_m = max(self.ego_error_m, math.hypot(x_m - place.x_m, y_m - place.y_m))
+    def _read(self, ego: Ego, place: Bumper, vehicles: Found) -> Array:
+        """Return the vehicles round an ego, and the people."""
+        around = self._around
+        people: Found = self._sumo.poi.getContextSubscriptionResults(ego.name)
         room = CAPACITY + 1 - len(self._egos)  # for the others of ours
         users = road_users(vehicles, people, self._numbers, around.road_map.moved_m, (place.x_m, place.y_m), room)
         if around.ground is not None and len(users):
