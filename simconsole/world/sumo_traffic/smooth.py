@@ -1,8 +1,8 @@
 """SUMO's vehicles without its leaps: who is on the other lane within a step is told on its way there. Pure.
 
 Without sublanes SUMO changes lanes at once, 3 m to the side in a step, and turns at the corners of its lines. A
-vehicle that has leapt is told where its speed would have brought it, and comes from there to where SUMO has it, no faster
-than its speed allows; its heading turns no faster than a car does. Who stands stays where it is told.
+vehicle that has leapt is told where its speed would have brought it, and comes from there to where SUMO has it, no
+faster than its speed allows; its heading turns no faster than a car does. Who stands stays where it is told.
 """
 
 from typing import Any, Final
