@@ -97,7 +97,7 @@ def test_what_a_controller_says_is_logged_when_it_is_another() -> None:
     assert told.take_messages(6) == [(ADVICE, to_bytes(BAND))]
     told.take(to_bytes(BAND).decode())
     assert told.take_messages(11) == []
-    with pytest.raises(ValueError, match="advice"):
+    with pytest.raises(ValueError, match="7 is not a valid Advised"):
         told.take('{"kind": 7}')
     assert told.take_messages(16) == []
 
