@@ -36,7 +36,7 @@ def test_stopping_and_nothing() -> None:
 def told(advice: Advice = NO_ADVICE, **fields: float) -> str:
     """What the display tells below the mode."""
     settings = settings_for(HudProfile(), ControlProfile())
-    return view(snapshot(**fields), 0.0, HudMemory(), settings, advice=advice)[0].notice_label
+    return view(snapshot(250, **fields), 0.0, HudMemory(), settings, advice=advice)[0].notice_label
 
 
 def test_the_display_tells_advice_unless_there_is_a_notice() -> None:
@@ -50,6 +50,6 @@ def test_the_display_tells_advice_unless_there_is_a_notice() -> None:
 
 def test_the_display_tells_that_traffic_is_lost_where_there_is_nothing_else_to_tell() -> None:
     lost = {"ahead__traffic_lost": 1.0}
-    assert told(**lost) == "traffic has failed: the road is empty"
+    assert told(NO_ADVICE, **lost) == "traffic has failed: the road is empty"
     assert told(STOP, **lost) == "prepare to stop"
-    assert told(**lost, rules__red_light=1.0) == notice_label(Notice.RED_LIGHT)
+    assert told(NO_ADVICE, **lost, rules__red_light=1.0) == notice_label(Notice.RED_LIGHT)
