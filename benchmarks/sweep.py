@@ -40,7 +40,7 @@ BARE = """\
 import sys
 from pathlib import Path
 from simconsole.evaluation.sweep.plan import load_plan
-from simconsole.evaluation.sweep.task import drive_task
+from simconsole.evaluation.sweep.driving import drive_task
 for task in load_plan(Path(sys.argv[1])).tasks:
     assert drive_task(task).outcome == "driven"
 """
