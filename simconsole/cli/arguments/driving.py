@@ -69,6 +69,9 @@ def _scenario(commands: Any) -> None:
     scenario.add_argument(
         "--lane-width", type=number(1.0, 10.0, "m"), default=3.5, metavar="M", help="of the road (3.5)"
     )
+    scenario.add_argument(
+        "--parameter", action="append", default=[], metavar="NAME=VALUE", help="of those that the file declares"
+    )
     scenario.add_argument("--partly", action="store_true", help="leave out what is not understood, and list it")
     scenario.add_argument("--out", metavar="FILE", help="the scenario (default: its name here, .yaml)")
 
