@@ -9,6 +9,7 @@ and writes docs/long-run.md.
 import datetime
 import os
 import signal
+import sys
 from collections.abc import Sequence
 from typing import Final
 
@@ -23,6 +24,11 @@ from tests.samples import SAMPLED, draw_seed, measured, module_sample, sample
 __all__ = ["demo", "measured", "module_sample", "once", "sample", "script", "short"]
 
 account: Final = Account()
+
+# Where this is set (as in many containers), each of the hundreds of programs that the tests start would compile all
+# sources of this project anew, which takes as long as half of its imports; and each process of a run all tests.
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 # A shell starts background jobs with SIGINT ignored, and nohup ignores SIGHUP; every program that a test starts would
 # inherit that: a Ctrl-C or a hang-up sent to it would be lost, however the tests themselves were started.
