@@ -9,12 +9,13 @@ and writes docs/long-run.md.
 import datetime
 import os
 import signal
+import sys
 from collections.abc import Sequence
 from typing import Final
 
 import pytest
 
-from tests import long_run
+from tests import long_run, memory
 from tests.account import Account
 from tests.drives.fixtures import demo, once, script, short
 from tests.faults import figures
@@ -23,6 +24,13 @@ from tests.samples import SAMPLED, draw_seed, measured, module_sample, sample
 __all__ = ["demo", "measured", "module_sample", "once", "sample", "script", "short"]
 
 account: Final = Account()
+peaks: Final[list[memory.Peak]] = []
+"""The largest process of the run, each time that a larger one was seen."""
+
+# Where this is set (as in many containers), each of the hundreds of programs that the tests start would compile all
+# sources of this project anew, which takes as long as half of its imports; and each process of a run all tests.
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 # A shell starts background jobs with SIGINT ignored, and nohup ignores SIGHUP; every program that a test starts would
 # inherit that: a Ctrl-C or a hang-up sent to it would be lost, however the tests themselves were started.
@@ -67,10 +75,18 @@ def pytest_xdist_node_collection_finished(node: object, ids: Sequence[str]) -> N
     account.tests = ids
 
 
+def pytest_runtest_teardown(item: pytest.Item) -> None:
+    """Keep how large the processes were until here: the report of the teardown tells it to the process of the run."""
+    item.user_properties.append((memory.KEY, memory.peak_mb()))
+
+
 def pytest_runtest_logreport(report: pytest.TestReport) -> None:
     """Keep of which tests there was an outcome."""
     if report.when not in ("setup", "call"):  # a process that died in a test is none of the three
         account.ended.add(report.nodeid)
+    for name, value in report.user_properties:
+        if name == memory.KEY and isinstance(value, float) and value > (peaks[-1].memory_mb if peaks else 0.0):
+            peaks.append(memory.Peak(value, report.nodeid))
 
 
 def pytest_internalerror(excrepr: object) -> None:
@@ -103,6 +119,8 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, exitstatu
     found = figures.seen(properties for _, properties in passed)
     for line in figures.lines(found, option("verbose") > 0):
         terminalreporter.write_line(line)
+    if peaks:
+        terminalreporter.write_line(peaks[-1].line())
     terminalreporter.write_line(f"seed {option('--seed')}")
     if option("--write-long-run"):
         long_run.write(_checks(terminalreporter), option("--seed"), datetime.datetime.now(datetime.UTC).date())

@@ -21,6 +21,7 @@ import pytest
 from packaging.requirements import Requirement
 
 from simconsole import __version__
+from simconsole.cli.main import parser
 from simconsole.cli.new.examples import EXAMPLES
 from tests.paths import ROOT
 
@@ -97,6 +98,34 @@ def test_metadata_names_licence_python_and_libraries(wheel: Path) -> None:
     assert metadata["License-Expression"] == "Apache-2.0"
     assert metadata["Requires-Python"] == "<3.15,>=3.11"
     assert "# simconsole" in str(metadata.get_payload())
+
+
+def test_metadata_says_who_made_it_and_what_it_is_and_names_no_address(wheel: Path) -> None:
+    with zipfile.ZipFile(wheel) as archive:
+        (name,) = (name for name in archive.namelist() if name.endswith(".dist-info/METADATA"))
+        metadata = email.message_from_string(archive.read(name).decode())
+    assert metadata["Author"]
+    assert "driving simulator" in metadata["Keywords"]
+    assert {"Typing :: Typed", "Operating System :: POSIX :: Linux"} <= set(metadata.get_all("Classifier", []))
+    assert metadata.get_all("Project-URL") is None, "the project has no address yet; README's clone line says so too"
+
+
+def test_container_copies_files_that_are_there_and_all_that_the_package_is_built_from() -> None:
+    lines = (ROOT / "Containerfile").read_text().splitlines()
+    copied = [source for line in lines if line.startswith("COPY ") for source in line.split()[1:-1]]
+    assert all((ROOT / source).exists() for source in copied), copied
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())
+    hatch = project["tool"]["hatch"]
+    needed = {"pyproject.toml", "README.md", "constraints.txt"}
+    needed |= {*hatch["build"]["targets"]["wheel"]["packages"], *hatch["build"]["targets"]["wheel"]["force-include"]}
+    needed |= set(project["project"]["license-files"])
+    assert [path for path in needed if not {path, path.partition("/")[0]} & {one.rstrip("/") for one in copied}] == []
+    commands = [line for line in lines if line.startswith(("ENTRYPOINT", "CMD"))]
+    words = [word for line in commands for word in json.loads(line.partition(" ")[2])]
+    assert words[0] in project["project"]["scripts"]
+    assert parser().options_of(words[1:]).command == "demo"
+    (image,) = [line for line in lines if line.startswith("FROM ")]
+    assert re.search(r"python:3\.1[1-4]\b", image)
 
 
 def test_every_library_is_pinned_at_a_version_that_fits() -> None:

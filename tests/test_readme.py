@@ -9,6 +9,7 @@ import os
 import re
 import subprocess
 import sys
+from pathlib import Path
 from typing import NamedTuple
 
 import pytest
@@ -18,8 +19,11 @@ from tests.paths import ROOT
 
 README = (ROOT / "README.md").read_text()
 BLOCKS = re.findall(r"^```console\n(.*?)^```", README, re.MULTILINE | re.DOTALL)
-COMMANDS = [line.removeprefix("$ ") for block in BLOCKS for line in block.splitlines() if line.startswith("$ ")]
+SHOWN = [line.removeprefix("$ ") for block in BLOCKS for line in block.splitlines() if line.startswith("$ ")]
 DEMO = "make demo"
+CLONE = "git clone ADDRESS simconsole && cd simconsole"
+COMMANDS = SHOWN[1:]
+"""All but the first: the checkout that runs the tests is what it makes."""
 DONE = "exit code of"
 
 
@@ -74,6 +78,16 @@ def test_command_runs(command: str, ran: dict[str, Ran]) -> None:
     assert "Traceback" not in ran[command].output
 
 
+def test_clone_line_leads_into_a_checkout(tmp_path: Path) -> None:
+    """Its ADDRESS is here a repository with a Makefile."""
+    words = "git -C {0} -c user.name=T -c user.email=t@example.org"
+    made = words.format("there")
+    script = f"git init -q there && touch there/Makefile && {made} add . && {made} commit -qm x && "
+    script += SHOWN[0].replace("ADDRESS", "there") + " && test -f Makefile"
+    done = subprocess.run(["bash", "-ec", script], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
 def test_demo_ends_as_the_page_shows(ran: dict[str, Ran]) -> None:
     """Every line of the expected output is there, numbers aside."""
     (expected,) = re.findall(r"^```\n(  distance.*?)^```", README, re.MULTILINE | re.DOTALL)
@@ -86,7 +100,7 @@ def test_page_is_short_and_begins_with_a_command() -> None:
     assert len(README.split()) <= 650
     first = next(number for number, line in enumerate(README.splitlines(), start=1) if line.startswith("$ "))
     assert first <= 20
-    assert COMMANDS[0] == DEMO
+    assert SHOWN[:2] == [CLONE, DEMO]
 
 
 def test_pictures_are_there_and_small() -> None:
@@ -94,5 +108,5 @@ def test_pictures_are_there_and_small() -> None:
     assert len(pictures) == 2
     for picture in pictures:
         content = (ROOT / picture).read_bytes()
-        assert content.startswith((b"\x89PNG", b"\xff\xd8\xff"))
+        assert content.startswith((b"\x89PNG", b"RIFF"))
         assert len(content) < 300_000

@@ -3,10 +3,9 @@
 from argparse import Namespace
 from pathlib import Path
 
-import msgspec
-
 from simconsole.cli.outcome import Outcome
 from simconsole.profiles.can import CanProfile
+from simconsole.profiles.validation import convert
 from simconsole.values.errors import CanError
 from simconsole.values.units import RAD_PER_DEG
 
@@ -18,8 +17,8 @@ def can(options: Namespace) -> Outcome:
     """Do one of the three until interrupted or its time is over.
 
     Raises:
-        CanError: the bus, a log or an option cannot be used.
-        ProfileError: the DBC is missing.
+        CanError: the bus or a log cannot be used.
+        ProfileError: an option is out of its bounds, or the DBC is missing.
     """
     from simconsole.canbus.bus.bus_tools import monitor, replay, send
     from simconsole.canbus.bus.worker import load_codec
@@ -32,8 +31,6 @@ def can(options: Namespace) -> Outcome:
         results = monitor(profile, codec, say=_say, duration_s=options.duration_s, logs=logs)
         return Outcome(0 if results["messages"] else 1, results, "" if results["messages"] else "nothing was heard")
     if options.action == "replay":
-        if options.file is None:
-            raise CanError("can replay: value missing: --file FILE, a log")
         if not 0.01 <= options.speed <= 100.0:
             raise CanError(f"--speed: value {options.speed:g}: 0.01 to 100")
         results = replay(profile, codec, Path(options.file), node=options.node, speed=options.speed)
@@ -66,7 +63,4 @@ def _profile(options: Namespace) -> CanProfile:
         "bitrate_bps": options.bitrate,
     }
     given = {key: value for key, value in plain.items() if value is not None}
-    try:
-        return msgspec.convert(given, CanProfile)
-    except msgspec.ValidationError as error:
-        raise CanError(f"command line: {error}") from None
+    return convert(given, CanProfile, "command line")

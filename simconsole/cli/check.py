@@ -1,6 +1,7 @@
 """`simconsole check`: scripted drives, headless, against their bounds and goldens."""
 
 from argparse import Namespace
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
@@ -8,6 +9,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 from simconsole.cli.outcome import Outcome, table
+from simconsole.cli.progress import Progress
 from simconsole.evaluation.checks.scenario_check import Verdict, check_scenario
 from simconsole.evaluation.checks.selection import selected
 from simconsole.processes.lifetimes import end_with_parent
@@ -23,11 +25,11 @@ def check(options: Namespace) -> Outcome:
     if options.review and options.update_golden:
         raise ProfileError("command line: --review: look first, then --update-golden")
     scenarios = selected(options.scenarios, options.select)
-    if options.jobs > 1:
-        with ProcessPoolExecutor(options.jobs, get_context("spawn"), end_with_parent) as pool:
-            verdicts = list(pool.map(check_scenario, scenarios, [options.update_golden] * len(scenarios)))
-    else:
-        verdicts = [check_scenario(scenario, options.update_golden) for scenario in scenarios]
+    verdicts: list[Verdict] = []
+    with Progress(f"{len(scenarios)} scenarios") as progress:
+        for verdict in _driven(scenarios, options):
+            verdicts.append(verdict)
+            progress.done("driven", len(verdicts) / len(scenarios))
     if options.junit:
         _write_junit(Path(options.junit), verdicts)
     if options.report:
@@ -37,6 +39,16 @@ def check(options: Namespace) -> Outcome:
     passed = all(verdict.passed for verdict in verdicts)
     results: dict[str, Any] = {"passed": passed, "scenarios": [_results(verdict) for verdict in verdicts]}
     return Outcome(0 if passed else 1, results, "\n".join(_line(verdict) for verdict in verdicts))
+
+
+def _driven(scenarios: Sequence[str], options: Namespace) -> Iterator[Verdict]:
+    """Drive the scenarios, as many at a time as the command line says; yield what came of each, in their order."""
+    accepts = [options.update_golden] * len(scenarios)
+    if options.jobs > 1:
+        with ProcessPoolExecutor(options.jobs, get_context("spawn"), end_with_parent) as pool:
+            yield from pool.map(check_scenario, scenarios, accepts)
+    else:
+        yield from map(check_scenario, scenarios, accepts)
 
 
 def _results(verdict: Verdict) -> dict[str, Any]:

@@ -23,7 +23,7 @@ def demo(options: Namespace) -> Outcome:
     """Drive the demo session, write report and scene, and print what came of it."""
     resolved = resolve(demo_session(perfect=options.perfect, sumo=options.sumo, realtime=options.realtime))
     folder = Path(options.out) if options.out else Path("out") / time.strftime("demo-%Y%m%d-%H%M%S")
-    with Progress("driving", route_length_m(resolved.world)) as progress:
+    with Progress("driving", route_length_m(resolved.world), resolved.session.scenario.duration_s) as progress:
         result = drive(resolved, folder, show=progress.show)
     return finish(result, packed=not options.no_pack)
 

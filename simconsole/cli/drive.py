@@ -31,7 +31,7 @@ def drive(options: Namespace) -> Outcome:
         asks = not (options.json or options.headless)
         resolved = _with_a_cockpit(resolved, choose=options.choose, asks=asks)
     folder = Path(options.out) if options.out else Path("out") / time.strftime("drive-%Y%m%d-%H%M%S")
-    with Progress("driving", route_length_m(resolved.world)) as progress:
+    with Progress("driving", route_length_m(resolved.world), resolved.session.scenario.duration_s) as progress:
         drives = drive_fleet if resolved.fleet else drive_session
         result = drives(resolved, folder, show=progress.show, given=given)
     outputs = resolved.session.outputs

@@ -1,10 +1,12 @@
 """The end of `simconsole demo` and `simconsole drive`: packing, report and scene, the table, the exit code."""
 
 from collections import Counter
+from pathlib import Path
 from typing import Any
 
 from simconsole.cli.outcome import RECORDING_FAILED, Outcome, table
 from simconsole.cli.progress import Progress
+from simconsole.cli.terminal.talk import say
 from simconsole.evaluation.metrics.rule_metrics import RULES
 from simconsole.evaluation.report.exports import REPORT, write_exports
 from simconsole.evaluation.report.scene_export import SCENE
@@ -39,6 +41,8 @@ def finish(result: DriveResult, report: bool = True, scene: bool = True, packed:
         report, scene, results["exports_failure"] = False, False, "not tried, for the recording failed"
     if not result.ticks:
         return Outcome(code, results, table([("bundle", f"{result.folder}: no tick was recorded"), *ended, *failed]))
+    if result.interrupted:
+        say(_rest(result.folder, packed and not failed, report, scene))
     # Packed first: what reads a few columns of a long drive is then done in seconds, not minutes.
     of_packing = _pack(result, results) if packed and not failed else []
     rows = _export(result, report, scene, results)
@@ -71,6 +75,14 @@ def _pack(result: DriveResult, results: dict[str, Any]) -> list[tuple[str, str]]
         results["packing_failure"] = said = one_line(error)
         return [("packed", f"no: {said}")]
     return [("packed", f"{sizes.packed_bytes / 1e6:.1f} MB, of a log of {sizes.log_bytes / 1e6:.1f} MB")]
+
+
+def _rest(folder: Path, packed: bool, report: bool, scene: bool) -> str:
+    """Return what is still to be done after Ctrl-C, and how to be without it."""
+    steps = [("packing it (--no-pack)", packed), ("writing the report (outputs.report: false)", report)]
+    steps.append(("writing the scene (outputs.scene: null)", scene))
+    wanted = " and ".join(step for step, is_wanted in steps if is_wanted)
+    return f"the drive has ended and is whole in {folder}" + (f"; now {wanted}" if wanted else "")
 
 
 def _patience(result: DriveResult) -> str:

@@ -1,7 +1,6 @@
 """`simconsole replay | verify | sign | compare | report | view | pack | unpack`: what can be done with a bundle."""
 
 import re
-import sys
 import time
 from argparse import Namespace
 from collections.abc import Callable
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 from simconsole.cli.differing import columns_text, differences_text, plain_differences, read_tolerances
 from simconsole.cli.outcome import Outcome
 from simconsole.cli.progress import Progress
+from simconsole.cli.terminal.talk import say
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.manifest import SIGNATURE, read_manifest, refuse_signed
 from simconsole.recording.bundles.pack import Sizes, Watch
@@ -51,7 +51,8 @@ def _replayed(folder: Path, tolerances: str | None) -> Outcome:
     """Re-simulate what one platform's bundle holds."""
     from simconsole.recording.bundles.replay_bundle import replay_bundle
 
-    result = replay_bundle(folder, read_tolerances(tolerances))
+    with Progress("replaying") as progress:
+        result = replay_bundle(folder, read_tolerances(tolerances), progress.count)
     covered = coverage(folder)
     said = inexact(folder, read_manifest(folder))
     results = {
@@ -217,9 +218,9 @@ def _serve(path: Path, drive: "RunningScene | None", options: Namespace) -> Outc
     with Interrupt() as interrupt:
         server = SceneServer(path, Ports(options.port, options.web_port), options.memory)
         native, browser = server.addresses
-        _say(f"serving {path}")
-        _say(f"viewers of this machine: rerun --connect {native}")
-        _say(f"browsers of this machine: {browser}")
+        say(f"serving {path}")
+        say(f"viewers of this machine: rerun --connect {native}")
+        say(f"browsers of this machine: {browser}")
         try:
             if options.browser:
                 open_browser(browser)
@@ -229,20 +230,16 @@ def _serve(path: Path, drive: "RunningScene | None", options: Namespace) -> Outc
                 served += server.pump()
                 if window is not None and window.poll() is not None:
                     if window.returncode:
-                        _say("rerun's own window could not be opened, as it says above: try the browser's address")
+                        say("rerun's own window could not be opened, as it says above: try the browser's address")
                     window = None
                 if drive is not None and not ended and not drive.goes_on:
                     ended = True
-                    _say("the drive has ended; Ctrl-C ends the view")
+                    say("the drive has ended; Ctrl-C ends the view")
                 time.sleep(LOOK_S)
         finally:
             server.close()
     results = {"scene": str(path), "served_bytes": served, "native": native, "browser": browser, "ended": ended}
     return Outcome(INTERRUPTED, results, f"{path}: {served / 1e6:.1f} MB served")
-
-
-def _say(line: str) -> None:
-    print(f"simconsole: {line}", file=sys.stderr, flush=True)
 
 
 def pack(options: Namespace) -> Outcome:

@@ -13,11 +13,6 @@ from simconsole.values.labels import notice_label
 from simconsole.values.state_vector import Snapshot
 
 
-def bridge(options: Namespace) -> Outcome:
-    """Do what `options.action` names."""
-    return {"serve": serve, "check": check, "bench": bench, "cert": cert}[options.action](options)
-
-
 def serve(options: Namespace) -> Outcome:
     """Serve rosbridge on a standing car that nobody sits in, in real time, until interrupted; nothing is kept."""
     from simconsole.bridge.ros2.node import check as check_ros2
@@ -97,13 +92,12 @@ def check(options: Namespace) -> Outcome:
     """Test the server at `options.url` where rosbridge servers differ; the code is 1 if it deviates anywhere."""
     from simconsole.bridge.tools import conformance
 
-    url = options.url or f"ws://{options.host}:{options.port}"
-    rows = conformance.check(url, own_token())
+    rows = conformance.check(options.url, own_token())
     passed = sum(row.passed for row in rows)
     lines = [
         ("pass" if row.passed else "DEVIATION", f"{row.name}: {row.found}" if row.found else row.name) for row in rows
     ]
-    results = {"url": url, "passed": passed, "rows": [row._asdict() for row in rows]}
+    results = {"url": options.url, "passed": passed, "rows": [row._asdict() for row in rows]}
     return Outcome(0 if passed == len(rows) else 1, results, f"{table(lines)}\n{passed} of {len(rows)} pass")
 
 

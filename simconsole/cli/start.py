@@ -12,8 +12,8 @@ from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load, names
 from simconsole.profiles.files.titles import shipped
 from simconsole.profiles.files.world_files import load_world
+from simconsole.profiles.parts.turtlebot import TurtlebotProfile
 from simconsole.profiles.session import SessionProfile
-from simconsole.profiles.vehicle import TurtlebotProfile
 from simconsole.profiles.view import HudProfile
 from simconsole.profiles.world import ArenaProfile
 from simconsole.session.resolution import override, resolve

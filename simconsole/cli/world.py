@@ -37,11 +37,9 @@ def world(options: Namespace) -> Outcome:
         return Outcome(
             0, {"worlds": worlds}, table([(one["name"], f"{one['kind']:<7} {one['title']}") for one in worlds])
         )
-    if options.name is None:
-        raise ProfileError(f"command line: WORLD: value missing: what to {options.action}")
     if options.action == "show":
         return _show(options.name)
-    out = Path(options.out or ".")
+    out = Path(options.out)
     if options.action == "export":
         return _export(options.name, out, options.resolution)
     source = Path(options.name)

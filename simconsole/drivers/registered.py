@@ -4,14 +4,14 @@ Each stands where the bridge stands in lockstep, as `drivers/own_controller.py` 
 sweep drives with it and needs no program beside.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Final, NamedTuple
 
 from simconsole.drivers.own_controller import Controller
 from simconsole.profiles.session import ControllerChoice
-from simconsole.values.errors import ControllerError, ProfileError, SimConsoleError, one_line
+from simconsole.values.errors import ControllerError, one_line
 from simconsole.values.platform import Platform
-from simconsole.values.registered import Bounded, bounded_values, load
+from simconsole.values.registered import Bounded, bounded_values, load, made
 from simconsole.values.signals import RemoteCommand
 from simconsole.values.state_vector import Snapshot
 from simconsole.world.route import Route
@@ -46,14 +46,8 @@ def named_controller(
     """
     made_by = load(GROUP, choice.name, OwnController, f"{_KEY}.name") if own is None else own
     values = bounded_values(made_by.parameters, choice.parameters, f"{_KEY}.parameters")
-    try:
-        controller = made_by.make(ControllerSettings(values, route, vehicle, period_s))
-    except SimConsoleError:
-        raise
-    except Exception as error:  # whatever a stranger's function does
-        raise ProfileError(f"{_KEY}: value {choice.name}: {one_line(error)}") from error
-    if not callable(controller):
-        raise ProfileError(f"{_KEY}: value {choice.name}: {type(controller).__name__}: a function of a snapshot")
+    settings = ControllerSettings(values, route, vehicle, period_s)
+    controller = made(lambda: made_by.make(settings), _flaws, f"{_KEY}: value {choice.name}")
 
     def call(seen: Snapshot) -> RemoteCommand | None:
         try:
@@ -62,6 +56,11 @@ def named_controller(
             raise ControllerError(f"controller {choice.name}: tick {seen.tick}: {one_line(error)}") from error
 
     return call
+
+
+def _flaws(controller: Controller) -> Iterator[str]:
+    if not callable(controller):
+        yield f"{type(controller).__name__}: a function of a snapshot"
 
 
 def _command(answer: RemoteCommand | None) -> RemoteCommand | None:

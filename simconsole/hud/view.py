@@ -14,7 +14,7 @@ from simconsole.profiles.view import ENGLISH, HudProfile, LanguageProfile
 from simconsole.values.key_codes import Key
 from simconsole.values.labels import commander_label, gear_label, is_eased, mode_label, notice_label, reason_label
 from simconsole.values.layout import read
-from simconsole.values.signals import FAR, NEVER_TICKS, Event, GateLimit, Mode
+from simconsole.values.signals import FAR, NEVER_TICKS, Event, GateLimit, Mode, Notice
 from simconsole.values.state_vector import LAYOUT, Snapshot
 from simconsole.values.units import DEG_PER_RAD, KMH_PER_MPS, RPM_PER_RADPS
 from simconsole.values.validity import is_trusted
@@ -193,6 +193,13 @@ def force_label(snapshot: Snapshot, memory: HudMemory) -> tuple[str, bool, float
     return ("eased" if eased else "on"), True, clipped_s
 
 
+def _notice_label(snapshot: Snapshot, language: LanguageProfile, advice: Advice) -> str:
+    """Return what is told below the mode: a notice, else advice, else that traffic is lost, which it is for good."""
+    first = say(language, notice_label(snapshot.arbitration.notice or snapshot.broken_rule))
+    lost = snapshot.notice == Notice.TRAFFIC_LOST
+    return first or advice_label(advice, language) or (say(language, notice_label(Notice.TRAFFIC_LOST)) if lost else "")
+
+
 def view(
     snapshot: Snapshot,
     age_s: float,
@@ -238,8 +245,7 @@ def view(
             snapshot, language, settings.standstill_mps, settings.manual_button, settings.reset_button
         ),
         refusal_label=say(language, reason_label(arbitration.refusal)) if arbitration.refusal else "",
-        notice_label=say(language, notice_label(arbitration.notice or snapshot.broken_rule))
-        or advice_label(advice, language),
+        notice_label=_notice_label(snapshot, language, advice),
         recording_failed=snapshot.recording_failed,
         takeover_stage=int(arbitration.takeover_stage),
         remaining_s=_remaining_s(snapshot, settings),

@@ -5,16 +5,12 @@ from typing import Annotated, Literal, NamedTuple, TypeAlias
 from msgspec import Meta, Struct
 
 from simconsole.profiles.force_feedback import ForceFeedback
+from simconsole.profiles.parts.axes import MIN_TRAVEL_RAW, PedalAxis, WheelAxis
+from simconsole.profiles.parts.ranges import Title
 
 RoleName: TypeAlias = Literal["wheel", "pedals", "shifter", "handbrake"]
 UsbId: TypeAlias = Annotated[int, Meta(ge=0, le=0xFFFF)]
-AxisIndex: TypeAlias = Annotated[int, Meta(ge=0, le=31)]
 ButtonIndex: TypeAlias = Annotated[int, Meta(ge=0, le=127)]
-Raw: TypeAlias = Annotated[float, Meta(ge=-1.0, le=1.0)]
-Share: TypeAlias = Annotated[float, Meta(ge=0.0, le=1.0)]
-Curve: TypeAlias = Annotated[float, Meta(ge=0.2, le=5.0)]
-"""1: linear. Above 1: gentle at first, the slope at rest is 1 / curve of the linear one; below 1: steep at first."""
-Title: TypeAlias = Annotated[str, Meta(max_length=200)]
 
 ButtonLabel: TypeAlias = Annotated[str, Meta(min_length=1, max_length=16)]
 """What is printed on a button, or what it is called."""
@@ -23,8 +19,6 @@ MAX_BUTTONS = 128
 """As many as Windows tells of one device (DIJOYSTATE2)."""
 MOST_MEANINGS = 24
 """Buttons of one device that may have a meaning: a state vector holds so many of each."""
-MIN_TRAVEL_RAW = 0.2
-"""A pedal whose ends lie closer together than this cannot be distinguished from its noise."""
 
 
 class DeviceKey(NamedTuple):
@@ -39,25 +33,40 @@ class OtherDevice(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     """A device that plays the same role with the same numbers, used where the first one is not there."""
 
     vendor_id: UsbId
+    """USB vendor number of the other device, as `simconsole devices list` says."""
     product_id: UsbId
+    """USB product number of the other device, as `simconsole devices list` says."""
     name: Title
-    axes: Annotated[int, Meta(ge=0, le=32)]  # at least
+    """What the other device is called; shown to people, never compared."""
+    axes: Annotated[int, Meta(ge=0, le=32)]
+    """How many axes the other device has at least."""
     buttons: Annotated[int, Meta(ge=0, le=MAX_BUTTONS)]
+    """How many buttons the other device has at least."""
 
 
 class RoleBinding(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """One role and the device that plays it, found by its USB identity, never by its number or name."""
 
     role: RoleName
+    """What the device is in the cockpit."""
     vendor_id: UsbId
+    """USB vendor number of the device, as `simconsole devices list` says."""
     product_id: UsbId
-    name: Title  # as the firmware says it; shown to people, never matched
-    port: Title = ""  # of two devices with one id: where this one is plugged in, as `simconsole devices list` says
+    """USB product number of the device, as `simconsole devices list` says."""
+    name: Title
+    """What the device's firmware calls itself; shown to people, never compared."""
+    port: Title = ""
+    """Where this device is plugged in, as `simconsole devices list` says; needed where two devices have one number."""
     axes: Annotated[int, Meta(ge=0, le=32)]
+    """How many axes the device has at least."""
     buttons: Annotated[int, Meta(ge=0, le=MAX_BUTTONS)]
+    """How many buttons the device has at least."""
     hats: Annotated[int, Meta(ge=0, le=4)] = 0
-    button_labels: Annotated[list[ButtonLabel], Meta(max_length=MAX_BUTTONS)] = []  # of button 0, 1, ...
-    others: Annotated[list[OtherDevice], Meta(max_length=8)] = []  # of a shifter only
+    """How many hats (direction pads) the device has at least."""
+    button_labels: Annotated[list[ButtonLabel], Meta(max_length=MAX_BUTTONS)] = []
+    """What is printed on button 0, 1 and so on, for the display; a button without a label is called by its number."""
+    others: Annotated[list[OtherDevice], Meta(max_length=8)] = []
+    """Devices with the same axes and buttons that are used where this one is not there; only for a shifter."""
 
     def __post_init__(self) -> None:
         """Refuse another device for a role whose motor and limits are asked for by its one identity.
@@ -83,61 +92,24 @@ class BootMode(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """An identity under which a device of this cockpit answers while it cannot drive."""
 
     vendor_id: UsbId
+    """USB vendor number under which the device answers while it cannot drive."""
     product_id: UsbId
+    """USB product number under which the device answers while it cannot drive."""
     cure: Title
-
-
-class SteeringAssistance(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """For keys and sticks: full deflection turns the hand wheel less and slower the faster the car is."""
-
-    half_at_mps: Annotated[float, Meta(gt=0.0, le=100.0)] = 5.6
-    """At this speed full deflection is half of the angle at standstill. 5.6 with 900 degrees from lock to lock keeps a
-    passenger car below 6 m/s2 of side force at any speed."""
-    full_s: Annotated[float, Meta(ge=0.1, le=5.0)] = 1.0
-    """From the middle to what the speed allows."""
-
-
-class WheelAxis(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The hand wheel."""
-
-    axis: AxisIndex
-    lock_to_lock_deg: Annotated[float, Meta(ge=40.0, le=2520.0)]
-    grows_to: Literal["left", "right"] = "right"
-    centre_raw: Annotated[float, Meta(ge=-0.5, le=0.5)] = 0.0
-    dead_zone: Annotated[float, Meta(ge=0.0, le=0.1)] = 0.0
-    curve: Curve = 1.0  # for sticks: the angle of a wheel is an angle
-    rate_filter_s: Annotated[float, Meta(ge=0.0, le=0.5)] = 0.02
-    assistance: SteeringAssistance | None = None  # none: the angle is the hand's own
-
-
-class PedalAxis(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """One pedal. `rest_raw` and `full_raw` carry the polarity."""
-
-    axis: AxisIndex
-    rest_raw: Raw
-    full_raw: Raw
-    dead_zone: Annotated[float, Meta(ge=0.0, le=0.3)] = 0.02
-    curve: Curve = 1.0
-
-    def __post_init__(self) -> None:
-        """Refuse a pedal without travel.
-
-        Raises:
-            ValueError: the ends lie too close together.
-        """
-        if abs(self.full_raw - self.rest_raw) < MIN_TRAVEL_RAW:
-            raise ValueError(
-                f"rest_raw {self.rest_raw} and full_raw {self.full_raw} must lie at least {MIN_TRAVEL_RAW} apart"
-            )
+    """What a person must do so that the device can drive; shown to them."""
 
 
 class Pedals(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The pedals, on the device of the role `pedals`; the handbrake on its own where the role `handbrake` is bound."""
 
     throttle: PedalAxis
+    """Axis of the throttle. It may share the brake's axis if the two go to opposite sides of one rest."""
     brake: PedalAxis
+    """Axis of the brake."""
     clutch: PedalAxis | None = None
+    """Axis of the clutch; left out, there is none."""
     handbrake: PedalAxis | None = None
+    """Axis of the handbrake, on its own device where `roles` bind one; left out, there is none."""
 
     def __post_init__(self) -> None:
         """Refuse a throttle and a brake on one axis that do not go apart from a common rest.
@@ -164,19 +136,29 @@ class Shifter(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The lever: one button per gear (H pattern) or two that step."""
 
     pattern: Literal["h", "sequential"]
+    """How the lever works: `h` has one button for each gear, `sequential` has one to shift up and one down."""
     on: Literal["wheel", "shifter"] = "shifter"
-    gears: Annotated[list[ButtonIndex], Meta(max_length=7)] = []  # button of gear 1, 2, ...
+    """The role on whose device the lever's buttons are."""
+    gears: Annotated[list[ButtonIndex], Meta(max_length=7)] = []
+    """Button of gear 1, 2 and so on; at least one where `pattern` is `h`. All differ from each other and from
+    `reverse`."""
     reverse: ButtonIndex | None = None
+    """Button of the reverse gear; left out, there is none."""
     top_gear: Annotated[int, Meta(ge=1, le=7)] = 6
+    """Highest gear of a sequential lever."""
     neutral_dwell_s: Annotated[float, Meta(ge=0.0, le=1.0)] = 0.1
+    """How long no gear must be in before it counts as neutral: between two gears there is a moment without one."""
 
 
 class ButtonBinding(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A button by its number on the device of a role, or a direction of the wheel's hat."""
 
     on: Literal["wheel", "shifter"] = "wheel"
+    """The role on whose device the button is; `wheel` where `hat` is given."""
     button: ButtonIndex | None = None
+    """Number of the button on its device, from 0. Exactly one of `button` and `hat` is given."""
     hat: Literal["left", "right", "up", "down"] | None = None
+    """Direction of the wheel's hat (direction pad) that takes the place of a button."""
 
     def __post_init__(self) -> None:
         """Refuse both and neither, and a hat of the shifter: only the wheel's is read.
@@ -194,53 +176,87 @@ class Buttons(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What the buttons mean; one left out has no button."""
 
     autonomous: ButtonBinding | None = None
+    """Asks for autonomous driving; left out, no button does."""
     manual: ButtonBinding | None = None
+    """Asks for driving by hand; left out, no button does."""
     emergency_stop: ButtonBinding | None = None
+    """Stops the car at once with the full brake; left out, no button does."""
     reset: ButtonBinding | None = None
+    """Ends an emergency stop or another stop once the car stands; left out, no button does."""
     shift_up: ButtonBinding | None = None
+    """Shifts one gear up with a sequential lever; left out, no button does."""
     shift_down: ButtonBinding | None = None
+    """Shifts one gear down with a sequential lever; left out, no button does."""
     indicator_left: ButtonBinding | None = None
+    """Switches the left turn indicator; left out, no button does."""
     indicator_right: ButtonBinding | None = None
+    """Switches the right turn indicator; left out, no button does."""
     mark: ButtonBinding | None = None
-    pause: ButtonBinding | None = None  # and start again
+    """Puts a mark into the recording at this moment; left out, no button does."""
+    pause: ButtonBinding | None = None
+    """Lets simulated time stand, and go on again; left out, no button does."""
     restart: ButtonBinding | None = None
+    """Begins the drive anew from its start; left out, no button does."""
     takeover: ButtonBinding | None = None
+    """Raises a request to take over, as a controller can; left out, no button does."""
     shared: ButtonBinding | None = None
+    """Asks for shared control; left out, no button does."""
     fault: ButtonBinding | None = None
+    """Raises the event `fault`, which faults with `on_event: fault` wait for; left out, no button does."""
     hazard: ButtonBinding | None = None
-    handbrake_button: ButtonBinding | None = None  # a handbrake that is one: pulled fully while held
+    """Switches the hazard lights; left out, no button does."""
+    handbrake_button: ButtonBinding | None = None
+    """A handbrake that is a button: pulled fully while it is held; left out, there is none."""
     horn: ButtonBinding | None = None
+    """Sounds the horn while it is held; left out, no button does."""
 
 
 class Limits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """When an input counts as at rest, and how long a silent one is held (facts: 100 ms)."""
 
     arming: Annotated[float, Meta(gt=0.0, le=0.2)] = 0.05
+    """Share of the travel below which a pedal counts as released when the cockpit is armed."""
     stale_s: Annotated[float, Meta(gt=0.0, le=0.5)] = 0.1
-    rearm_deg: Annotated[float, Meta(gt=0.0, le=90.0)] = 5.0  # a wheel that was lost obeys again this near the car's
+    """An input that says nothing for longer than this counts as lost."""
+    rearm_deg: Annotated[float, Meta(gt=0.0, le=90.0)] = 5.0
+    """A wheel that was lost obeys again when it is this near to the car's own steering."""
 
 
 class Provenance(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Source of a part of the profile, so that no guess is mistaken for a measurement."""
 
     status: Literal["captured", "documented", "unverified", "chosen"]
+    """Whether the values were measured on the device, are documented, unverified, or simply chosen."""
     source: Title
+    """Where the values come from: a file, a page, a date."""
 
 
 class CockpitProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Devices that make one cockpit, in whatever order they are plugged in."""
 
     schema: Literal[1]
+    """Version of this kind of file; always 1."""
     title: Title
+    """Name of the cockpit for people."""
     roles: list[RoleBinding] = []
+    """Which device is wheel, pedals and shifter, each bound once, and a handbrake if there is one; empty for a cockpit
+    of keys."""
     boot_modes: list[BootMode] = []
+    """Other identities of these devices, under which they cannot drive, each with its cure."""
     wheel: WheelAxis
+    """How the axis of the hand wheel is read."""
     pedals: Pedals
+    """How the axes of the pedals are read."""
     shifter: Shifter
+    """How the lever's buttons are read."""
     buttons: Buttons = Buttons()
+    """What the other buttons mean."""
     limits: Limits = Limits()
+    """When an input counts as at rest and when as lost; without it the defaults."""
     force_feedback: ForceFeedback | None = None
-    provenance: dict[str, Provenance] = {}  # by dotted key, the longest prefix counts
+    """The wheel's motor and how the wheel should feel; left out, the wheel has no motor."""
+    provenance: dict[str, Provenance] = {}
+    """Where values come from, by dotted key; the longest key that fits counts. Nothing is computed with it."""
 
     def __post_init__(self) -> None:
         """Refuse a profile in which a role is bound twice, only some roles are bound, or two gears share a button.
@@ -317,56 +333,3 @@ def _check_indices(binding: RoleBinding, profile: CockpitProfile) -> None:
         for button in (*profile.shifter.gears, profile.shifter.reverse):
             if button is not None and button >= binding.buttons:
                 raise ValueError(f"shifter button {button} must be below {binding.buttons}")
-
-
-ButtonName: TypeAlias = Literal[
-    "autonomous",
-    "manual",
-    "emergency_stop",
-    "reset",
-    "shift_up",
-    "shift_down",
-    "indicator_left",
-    "indicator_right",
-    "mark",
-    "pause",
-    "restart",
-    "takeover",
-    "shared",
-    "fault",
-    "hazard",
-    "handbrake_button",
-    "horn",
-]
-
-
-class ScriptPoint(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What the person does at one instant. A key left out is interpolated to its next mention."""
-
-    time_s: Annotated[float, Meta(ge=0.0, le=86_400.0)]
-    throttle: Share | None = None
-    brake: Share | None = None
-    clutch: Share | None = None
-    handbrake: Share | None = None
-    hand_wheel_deg: Annotated[float, Meta(ge=-1260.0, le=1260.0)] | None = None
-    gear: Annotated[int, Meta(ge=-1, le=7)] | None = None
-    press: list[ButtonName] = []  # held for 0.2 s
-
-
-class ScriptProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A person as a script: pedals and wheel go in straight lines from mention to mention, the lever in steps."""
-
-    schema: Literal[1] = 1
-    title: Title = ""
-    points: Annotated[list[ScriptPoint], Meta(min_length=1, max_length=100_000)]
-
-    def __post_init__(self) -> None:
-        """Refuse points whose time does not grow.
-
-        Raises:
-            ValueError: names the first such point.
-        """
-        for index in range(1, len(self.points)):
-            earlier, later = self.points[index - 1].time_s, self.points[index].time_s
-            if later <= earlier:
-                raise ValueError(f"points[{index}].time_s {later} must be above {earlier}, time only goes forward")

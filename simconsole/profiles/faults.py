@@ -9,7 +9,8 @@ from typing import Annotated, Any, Final, Literal, TypeAlias
 import msgspec
 from msgspec import Meta, Struct
 
-from simconsole.profiles.device import Raw, RoleName
+from simconsole.profiles.device import RoleName
+from simconsole.profiles.parts.axes import Raw
 
 AxisName: TypeAlias = Literal["wheel", "throttle", "brake", "clutch", "handbrake"]
 Seconds: TypeAlias = Annotated[float, Meta(ge=0.0, le=86_400.0)]
@@ -65,8 +66,11 @@ class Place(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A circle on the map that base_link comes into."""
 
     x_m: Annotated[float, Meta(ge=-1e5, le=1e5)]
+    """Place of the circle's middle along x of the map."""
     y_m: Annotated[float, Meta(ge=-1e5, le=1e5)]
+    """Place of the circle's middle along y of the map."""
     radius_m: Annotated[float, Meta(gt=0.0, le=1000.0)] = 5.0
+    """Radius of the circle."""
 
 
 class Trigger(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -77,16 +81,27 @@ class Trigger(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """
 
     at_s: Seconds | None = None
-    at_distance_m: Annotated[float, Meta(ge=0.0, le=1e6)] | None = None  # driven since the start
+    """Begin at this simulated time since the start of the drive."""
+    at_distance_m: Annotated[float, Meta(ge=0.0, le=1e6)] | None = None
+    """Begin when the vehicle has driven this far since the start."""
     near: Place | None = None
+    """Begin when base_link comes into this circle on the map."""
     above_mps: Annotated[float, Meta(ge=0.0, le=100.0)] | None = None
+    """Begin when the vehicle is faster than this."""
     below_mps: Annotated[float, Meta(gt=0.0, le=100.0)] | None = None
+    """Begin when the vehicle is slower than this, after it was that fast before."""
     gap_below_m: Annotated[float, Meta(gt=0.0, le=150.0)] | None = None
-    headway_below_s: Annotated[float, Meta(gt=0.0, le=60.0)] | None = None  # the gap by the own speed
-    collision_below_s: Annotated[float, Meta(gt=0.0, le=60.0)] | None = None  # the gap by the difference of the speeds
+    """Begin when the gap to whom the vehicle follows is shorter than this."""
+    headway_below_s: Annotated[float, Meta(gt=0.0, le=60.0)] | None = None
+    """Begin when the gap to whom the vehicle follows, divided by its own speed, is below this."""
+    collision_below_s: Annotated[float, Meta(gt=0.0, le=60.0)] | None = None
+    """Begin when the gap to whom the vehicle follows, divided by how fast it closes, is below this."""
     on_mode: ModeName | None = None
+    """Begin when the console comes into this driving mode."""
     on_event: EdgeName | None = None
-    delay_s: Seconds = 0.0  # after that
+    """Begin when this event happens."""
+    delay_s: Seconds = 0.0
+    """Wait for this long after the trigger before it begins."""
 
     def __post_init__(self) -> None:
         """Refuse what has no trigger, or more than one.
@@ -104,33 +119,40 @@ class Trigger(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 class Onset(Trigger, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """When a fault begins, and how long it lasts."""
 
-    for_s: Annotated[float, Meta(gt=0.0, le=86_400.0)] | None = None  # None: to the end of the drive
+    for_s: Annotated[float, Meta(gt=0.0, le=86_400.0)] | None = None
+    """How long it lasts; left out, to the end of the drive."""
 
 
 class Unplug(Onset, frozen=True, kw_only=True, tag_field="kind", tag="unplug"):
     """The device is gone, and with it every role on the same plug; its axes read 0.0, as SDL leaves them."""
 
     device: RoleName
+    """The role whose device is pulled out."""
 
 
 class Freeze(Onset, frozen=True, kw_only=True, tag_field="kind", tag="freeze"):
     """The device stays open but sends nothing new: its last values stay, and their age grows."""
 
     device: RoleName
+    """The role whose device sends nothing new."""
 
 
 class Stuck(Onset, frozen=True, kw_only=True, tag_field="kind", tag="stuck"):
     """One axis stays where it is, or jumps to `raw` and stays there; its age does not grow."""
 
     axis: AxisName
+    """The axis that no longer moves."""
     raw: Raw | None = None
+    """Raw value that the axis jumps to, -1 to 1; left out, it stays where it is."""
 
 
 class Swapped(Onset, frozen=True, kw_only=True, tag_field="kind", tag="swapped"):
     """Two axes have changed places."""
 
     axis: AxisName
+    """The one of the two axes that change places."""
     other: AxisName
+    """The other of the two axes that change places; not the same as `axis`."""
 
     def __post_init__(self) -> None:
         """Refuse an axis swapped with itself.
@@ -147,38 +169,51 @@ class Noise(Onset, frozen=True, kw_only=True, tag_field="kind", tag="noise"):
     """Uniform noise of up to `amplitude_raw` on one axis, the same for the same seed."""
 
     axis: AxisName
+    """The axis to which noise is added."""
     amplitude_raw: Annotated[float, Meta(gt=0.0, le=2.0)]
+    """Largest noise to either side, in raw units of -1 to 1."""
     seed: Seed = 1
+    """Number that the noise is drawn from: equal seeds give equal noise."""
 
 
 class Late(Onset, frozen=True, kw_only=True, tag_field="kind", tag="late"):
     """Everything of one device arrives `by_ms` late. `stamped`: the device stamps its data, so the age is known."""
 
     device: RoleName
+    """The role whose device is late."""
     by_ms: Annotated[float, Meta(gt=0.0, le=5000.0)]
+    """How late everything of the device arrives."""
     stamped: bool = True
+    """The device stamps its data, so that the console knows how old they are."""
 
 
 class Invalid(Onset, frozen=True, kw_only=True, tag_field="kind", tag="invalid"):
     """One axis reads an impossible value: NaN, an infinity or a number far outside its range."""
 
     axis: AxisName
+    """The axis that reads an impossible value."""
     reading: Literal["not_a_number", "infinite", "minus_infinite", "huge"] = "not_a_number"
+    """What the axis reads: no number at all, an infinity, or a number far outside of its range."""
 
 
 class Burst(Onset, frozen=True, kw_only=True, tag_field="kind", tag="burst"):
     """One device floods: its axes jump about by up to `amplitude_raw`, many times in a tick; the newest counts."""
 
     device: RoleName
+    """The role whose device floods the console."""
     events_per_s: Annotated[int, Meta(ge=1, le=1_000_000)] = 100_000
+    """How many events the device sends in a second."""
     amplitude_raw: Annotated[float, Meta(ge=0.0, le=2.0)] = 0.1
+    """How far the axes jump about, in raw units of -1 to 1."""
     seed: Seed = 1
+    """Number that the jumps are drawn from: equal seeds give equal jumps."""
 
 
 class TwoGears(Onset, frozen=True, kw_only=True, tag_field="kind", tag="two_gears"):
     """The lever shows this gear as well as the one it is in (-1: reverse)."""
 
     gear: Annotated[int, Meta(ge=-1, le=7)]
+    """The gear that the lever shows as well, -1 for reverse; not 0, for neutral has no button."""
 
     def __post_init__(self) -> None:
         """Refuse neutral, which no button shows.
@@ -201,45 +236,55 @@ class Silent(Onset, frozen=True, kw_only=True, tag_field="kind", tag="silent"):
     """The controller's commands stop without notice."""
 
     controller: ControllerName = "ros"
+    """The controller whose commands stop: on the ROS side, or on the CAN bus."""
 
 
 class Disconnected(Onset, frozen=True, kw_only=True, tag_field="kind", tag="disconnected"):
     """The controller's connection closes: its loss is reported once, then nothing comes."""
 
     controller: ControllerName = "ros"
+    """The controller whose connection closes: on the ROS side, or on the CAN bus."""
 
 
 class Refused(Onset, frozen=True, kw_only=True, tag_field="kind", tag="refused"):
     """Every command is refused at the bridge: an old stamp, not finite, out of range, a wrong type or frame."""
 
     controller: ControllerName = "ros"
+    """The controller whose commands are refused: on the ROS side, or on the CAN bus."""
 
 
 class LateCommands(Onset, frozen=True, kw_only=True, tag_field="kind", tag="late_commands"):
     """Commands arrive, steadily, `by_ms` older than they were: their stamps say so, they act as soon as before."""
 
     by_ms: Annotated[float, Meta(gt=0.0, le=5000.0)]
+    """How much older than before the commands are when they arrive."""
     controller: ControllerName = "ros"
+    """The controller whose commands are late: on the ROS side, or on the CAN bus."""
 
 
 class DelayedCommands(Onset, frozen=True, kw_only=True, tag_field="kind", tag="delayed_commands"):
     """What is sent meanwhile arrives, and acts, `by_ms` later, in whole ticks, and is older by that."""
 
     by_ms: Annotated[float, Meta(gt=0.0, le=5000.0)]
+    """How much later what is sent arrives and acts, in whole ticks."""
     controller: ControllerName = "ros"
+    """The controller whose commands are delayed: on the ROS side, or on the CAN bus."""
 
 
 class NotFinite(Onset, frozen=True, kw_only=True, tag_field="kind", tag="not_finite"):
     """A command that is not finite passes the bridge: the arbiter and the gate are the second line of defence."""
 
     controller: ControllerName = "ros"
+    """The controller whose command is not finite: on the ROS side, or on the CAN bus."""
 
 
 class Astray(Onset, frozen=True, kw_only=True, tag_field="kind", tag="astray"):
     """The controller asks for another road-wheel angle, in range and finite: the gate limits only its rate."""
 
     road_wheel_deg: Annotated[float, Meta(ge=-60.0, le=60.0)]
+    """Road-wheel angle that the controller asks for instead of its own, left is positive."""
     controller: ControllerName = "ros"
+    """The controller that asks for a wrong angle: on the ROS side, or on the CAN bus."""
 
 
 CommandFault: TypeAlias = Silent | Disconnected | Refused | LateCommands | DelayedCommands | NotFinite | Astray
@@ -250,13 +295,15 @@ class Stall(Onset, frozen=True, kw_only=True, tag_field="kind", tag="stall"):
     """The control loop stands still for this long, once; simulated time stands with it."""
 
     stall_ms: Annotated[float, Meta(gt=0.0, le=60_000.0)]
+    """How long the control loop stands still, once."""
 
 
 class Raises(Onset, frozen=True, kw_only=True, tag_field="kind", tag="raises"):
     """A part of the drive raises an exception whenever it is called."""
 
     part: Literal["devices", "ros", "can", "outputs", "stations"]
-    """`outputs`: who reads the snapshots; `stations` is its earlier name, still read."""
+    """The part of the drive that fails; `outputs` are those who read the snapshots, and `stations` is their earlier
+    name."""
 
     def __post_init__(self) -> None:
         """Take the earlier name of a part as the one of now."""

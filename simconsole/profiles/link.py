@@ -13,15 +13,19 @@ class LocalisationProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     """Errors of odometry, /tf and velocity report against the true state. Noise is white: drawn anew for each tick."""
 
     position_noise_m: Annotated[float, Meta(ge=0.0, le=10.0)] = 0.0
-    """Standard deviation along x and along y."""
+    """Standard deviation of the noise of the position, along x and along y."""
     yaw_noise_deg: Annotated[float, Meta(ge=0.0, le=45.0)] = 0.0
+    """Standard deviation of the noise of the heading."""
     speed_noise_mps: Annotated[float, Meta(ge=0.0, le=10.0)] = 0.0
+    """Standard deviation of the noise of the speed."""
     yaw_rate_noise_degps: Annotated[float, Meta(ge=0.0, le=45.0)] = 0.0
+    """Standard deviation of the noise of the yaw rate."""
     accel_noise_mps2: Annotated[float, Meta(ge=0.0, le=10.0)] = 0.0
-    """Of /imu/data."""
+    """Standard deviation of the noise of the acceleration in /imu/data."""
     position_drift_m: Annotated[float, Meta(ge=0.0, le=100.0)] = 0.0
-    """Standard deviation of an error that changes slowly, along x and along y."""
+    """Standard deviation of an error of the position that changes slowly, along x and along y."""
     yaw_drift_deg: Annotated[float, Meta(ge=0.0, le=45.0)] = 0.0
+    """Standard deviation of an error of the heading that changes slowly."""
     drift_time_s: Annotated[float, Meta(ge=1.0, le=3600.0)] = 20.0
     """How long a drift takes from one value to an independent one."""
 
@@ -30,10 +34,11 @@ class WayProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What happens to messages on their way, each by itself; added to what the sockets take, in whole ticks."""
 
     delay_ms: Milliseconds = 0.0
+    """How much later each message arrives."""
     jitter_ms: Milliseconds = 0.0
-    """Of the delay, evenly between 0 and this much more: messages overtake each other."""
+    """Each message arrives up to this much later still, drawn evenly: messages overtake each other."""
     loss_share: Share = 0.0
-    """Of the messages that never arrive."""
+    """Share of the messages that never arrive, 0 to 1."""
 
 
 class LinkProfile(WayProfile, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -44,10 +49,11 @@ class LinkProfile(WayProfile, frozen=True, kw_only=True, forbid_unknown_fields=T
     """
 
     seed: Annotated[int, Meta(ge=0, le=2**53)] = 1
-    """Of all that is drawn: equal seeds give equal errors, delays and losses."""
+    """Number that errors, delays and losses are drawn from: equal seeds give equal drives."""
     localisation: LocalisationProfile = LocalisationProfile()
+    """Errors of what the controller is told of the car's own motion; without it none."""
     measurements: WayProfile = WayProfile()
-    """Of what a controller is told of vehicle and road users: /odom, /tf, /imu/data and the like."""
+    """Delay and loss of what a controller is told of vehicle and road users: /odom, /tf, /imu/data and the like."""
     ground_truth: bool = False
     """Publish /ground_truth/odom although the localisation has errors, or measurements come late or never."""
 

@@ -49,7 +49,9 @@ class TirTyre(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     """A tyre from a PAC2002 file beside the vehicle's profile; reading the vehicle fills in the coefficients."""
 
     tir: str
+    """Name of the PAC2002 file (`.tir`) beside the vehicle's profile."""
     coefficients: dict[str, float] = {}
+    """Coefficients of the tyre by their names in PAC2002; filled in when the file is read."""
 
     def __post_init__(self) -> None:
         """Refuse coefficients that make no tyre.

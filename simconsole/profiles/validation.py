@@ -15,13 +15,35 @@ from simconsole.values.errors import ProfileError, did_you_mean
 T = TypeVar("T")
 
 PROFILE_FILES: Final = (".yaml", ".yml")
-ProfileName = Annotated[str, msgspec.Meta(pattern=r"^([A-Za-z0-9][A-Za-z0-9_-]{0,63}|.{1,1000}\.ya?ml)$")]
+
+
+def worded(pattern: str, allowed: str, *, min_length: int | None = None, max_length: int | None = None) -> msgspec.Meta:
+    """Return the bounds of a text, and what a message calls them: nobody has to read a pattern.
+
+    Args:
+        pattern: a regular expression that every such text matches.
+        allowed: the same, and the lengths, in words.
+        min_length: in characters, where the pattern says nothing of it.
+        max_length: likewise.
+    """
+    return msgspec.Meta(pattern=pattern, min_length=min_length, max_length=max_length, extra={"allowed": allowed})
+
+
+_PROFILE: Final = worded(
+    r"^([A-Za-z0-9][A-Za-z0-9_-]{0,63}|.{1,1000}\.ya?ml)$", "a name of letters, digits, _ and -, or a .yaml file"
+)
+ProfileName = Annotated[str, _PROFILE]
 """A shipped profile's bare name, or a file in the folder of the session or scenario that names it."""
+_REGISTERED: Final = worded(r"^[a-z][a-z0-9_]{0,60}$", "lower-case letters, digits and _, up to 61, a letter first")
+RegisteredName = Annotated[str, _REGISTERED]
+"""What another package has registered under an entry point."""
 
 _LOCATED: Final = re.compile(r"(?P<what>.*?)(?: - at (?:`(?P<key>key)` in )?`\$(?P<path>.*)`)?", re.DOTALL)
 _STEP: Final = re.compile(r"\.(?P<name>[^.\[]+)|\[(?P<index>\d+|\.\.\.)\]")
 _UNKNOWN: Final = re.compile(r"Object contains unknown field `(?P<name>.*)`", re.DOTALL)
 _MISSING: Final = re.compile(r"Object missing required field `(?P<name>.*)`")
+_OF_A_TEXT: Final = "Expected `str` "
+"""How msgspec begins to tell that a text is too long or does not match."""
 _SHOWN: Final = 60
 
 Path = tuple[str | int, ...]
@@ -51,7 +73,9 @@ def _explain(message: str, values: object, struct: type[Any]) -> str:
         path = (*path, missing["name"])
         return f"{_dotted(path)}: value missing: {_allowed(_types_at(path, struct, values), 'required')}"
     if located["key"]:
-        return f"{_dotted(path)}: {_plain(what)}"
+        keys = [key for kind in types for key in _members(getattr(kind, "key_type", None))]
+        guilty = _guilty_key(message, path, values, struct)
+        return f"{_dotted(path)}: key {_shown(guilty)}: {_allowed(keys, what)}"
     return f"{_dotted(path)}: value {_shown(_value_at(path, values))}: {_allowed(types, what)}"
 
 
@@ -124,7 +148,9 @@ def _stepped(values: Any, step: str | int) -> Any:
 def _members(kind: Any) -> list[Any]:
     if isinstance(kind, msgspec.inspect.UnionType):
         return [member for inner in kind.types for member in _members(inner)]
-    return _members(kind.type) if isinstance(kind, msgspec.inspect.Metadata) else [kind]
+    if isinstance(kind, msgspec.inspect.Metadata) and not kind.extra:  # what a text may be is told by its extra
+        return _members(kind.type)
+    return [kind]
 
 
 def _inner(kind: Any, step: str | int) -> list[Any]:
@@ -156,6 +182,9 @@ def _allowed(types: list[Any], what: str) -> str:
         return f"{noun}{_bounds(kind)}{or_null}"
     if isinstance(kind, msgspec.inspect.LiteralType):
         return f"one of {', '.join(str(value) for value in kind.values)}{or_null}"
+    texts = [one.extra["allowed"] for one in kinds if isinstance(one, msgspec.inspect.Metadata) and one.extra]
+    if texts and (kind or what.startswith(_OF_A_TEXT)):
+        return f"{', or '.join(texts)}{or_null}"
     if isinstance(kind, msgspec.inspect.EnumType):
         return f"one of {', '.join(str(member.value) for member in kind.cls)}{or_null}"
     return _plain(what)

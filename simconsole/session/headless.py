@@ -13,6 +13,7 @@ from simconsole.faults.schedule import with_faults
 from simconsole.processes.lifetimes import Interrupt, end, tell_to_end
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.session import SessionProfile
+from simconsole.session.advice.advice_worker import ToldAdvice, hears_advice
 from simconsole.session.autopilot_program import PROGRAM_END_S, new_nonce, own_token, start_autopilot
 from simconsole.session.lockstep import STAND_S, LockstepLink, LockstepServer
 from simconsole.session.opened import Opened, commands_over_link, outputs_of, summary_of, traffic_of
@@ -86,6 +87,7 @@ def open_headless(
     traffic, unpushable = others or traffic_of(resolved, console, stack), CollisionEnd(console.platform)
     if link is not None and resolved.session.features.controller is not None:
         raise ProfileError("features.controller: value given: without scenario.platforms: it drives one vehicle")
+    advice = ToldAdvice() if hears_advice(resolved.session) else None
     parts, pace = (
         OwnParts(_with_named(own, resolved, console), resolved.session.mode.control_period_ticks),
         UnpacedPacer(),
@@ -94,7 +96,7 @@ def open_headless(
         link = lockstep_link(parts.controller, resolved.session, interrupt)
         ros = _RosSide(commands_over_link(link, resolved, console), (link,), counters=link.counters)
     elif resolved.session.mode.pacing == "lockstep":
-        link = link or _open_lockstep(resolved, console, bundle, interrupt, stack, traffic)
+        link = link or _open_lockstep(resolved, console, bundle, interrupt, stack, traffic, advice)
         commands = commands_over_link(link, resolved, console)
         ros = _RosSide(commands, (link,), (link.stand,), link.counters, link.take_acts)
     elif resolved.session.features.commands is not None:
@@ -105,7 +107,7 @@ def open_headless(
     can = _open_can(resolved, console, bundle, stack)
     outputs = tuple(part for part in (can, parts.observer) if part is not None)
     cockpit = open_cockpit(resolved, console, stack)
-    recorder = LogRecorder(log, ros.take_acts, traffic, own.signals)
+    recorder = LogRecorder(log, ros.take_acts, traffic, advice, own.signals)
     components = Components(
         devices=cockpit.devices,
         commands=ros.commands,
@@ -155,6 +157,7 @@ def _open_lockstep(
     interrupt: Interrupt,
     stack: ExitStack,
     traffic: TrafficSource | None,
+    advice: ToldAdvice | None,
 ) -> LockstepLink:
     from simconsole.bridge.transport.lockstep_server import LockstepBridge
     from simconsole.session.view.external_view import display_settings, external_view
@@ -164,7 +167,7 @@ def _open_lockstep(
     if session.outputs.bridge is None:
         raise ProfileError("outputs.bridge: value missing: a bridge, where mode.pacing is lockstep")
     token, drive = own_token(session), new_nonce()
-    around = surroundings(resolved, console, traffic)
+    around = surroundings(resolved, console, traffic)._replace(on_advice=None if advice is None else advice.take)
     if session.outputs.bridge.external_view:
         around = around._replace(view=external_view(view_job(resolved), display_settings(resolved)))
     bridge = LockstepBridge(

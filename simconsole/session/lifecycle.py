@@ -31,7 +31,7 @@ from simconsole.recording.log_header import (
     vector_stream,
 )
 from simconsole.recording.own_signals import stream_of
-from simconsole.session.advice.advice_worker import gives_advice
+from simconsole.session.advice.advice_worker import gives_advice, hears_advice
 from simconsole.session.headless import open_headless
 from simconsole.session.opened import Opened
 from simconsole.session.paced import keeps_plans
@@ -200,7 +200,7 @@ def bundle_of(
     if traffic is not None and traffic.sumo is not None:
         road_users = (*road_users, message_stream(SIGNALS, "json"))
     plans = (message_stream(PLANS, PLANS_ENCODING),) if keeps_plans(resolved.session) else ()
-    if gives_advice(resolved.session):
+    if gives_advice(resolved.session) or hears_advice(resolved.session):
         plans = (*plans, message_stream(ADVICE))
     own = () if signals is None else (stream_of(signals),)
     return new_bundle(resolved, console, folder, given, (message_stream(ACTS), *road_users, *plans, *own))

@@ -12,8 +12,8 @@ from simconsole.control.requests.refusals import steering_limit
 from simconsole.processes.byte_slot import ByteSlot, Piece
 from simconsole.processes.shared_memory import EventCounters, Ring, TextQueue
 from simconsole.processes.worker import Worker, WorkerSpec
+from simconsole.profiles.parts.turtlebot import TurtlebotProfile
 from simconsole.profiles.session import SessionProfile
-from simconsole.profiles.vehicle import TurtlebotProfile
 from simconsole.profiles.world import RoadsProfile
 from simconsole.recording.log_header import PLANS
 from simconsole.session.advice.advice_worker import AdviceWorker, gives_advice

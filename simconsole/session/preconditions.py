@@ -3,8 +3,8 @@
 from typing import Final
 
 from simconsole.profiles.bridge import BridgeProfile
+from simconsole.profiles.parts.turtlebot import TurtlebotProfile
 from simconsole.profiles.session import SessionProfile
-from simconsole.profiles.vehicle import TurtlebotProfile
 from simconsole.profiles.world import ArenaProfile
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import ProfileError

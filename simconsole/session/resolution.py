@@ -8,10 +8,11 @@ from typing import Any, Final, TypeVar
 import msgspec
 
 from simconsole.hud.phrases import check_language
-from simconsole.profiles.device import CockpitProfile, ScriptProfile
+from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import find, load
 from simconsole.profiles.files.vehicle_files import load_vehicle
 from simconsole.profiles.files.world_files import load_world
+from simconsole.profiles.parts.script import ScriptProfile
 from simconsole.profiles.scenario import ScenarioProfile
 from simconsole.profiles.session import PlatformSection, SessionProfile, Start
 from simconsole.profiles.validation import PROFILE_FILES, convert

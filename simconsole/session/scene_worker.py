@@ -14,7 +14,8 @@ from simconsole.processes.receipts import Receipts, latencies_of
 from simconsole.processes.running_scene import name_scene
 from simconsole.processes.shared_memory import Ring
 from simconsole.processes.worker import Worker
-from simconsole.profiles.vehicle import CarProfile, TurtlebotProfile
+from simconsole.profiles.parts.turtlebot import TurtlebotProfile
+from simconsole.profiles.vehicle import CarProfile
 from simconsole.profiles.view import SceneProfile
 from simconsole.scene.entities import Dimensions
 from simconsole.scene.operator_acts import act_entry

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, runtime_checkable
 
 from simconsole.profiles.files.world_files import read_map
 from simconsole.profiles.traffic import TrafficProfile
@@ -31,6 +31,10 @@ from simconsole.world.traffic.impact import Moving
 from simconsole.world.traffic.leader import Leaders
 from simconsole.world.traffic.road_users import Box, RoadUser, RoadUsersAt, to_bytes
 from simconsole.world.traffic.traffic import Traffic
+
+if TYPE_CHECKING:
+    from simconsole.session.sumo.sumo_port import SumoPort
+    from simconsole.world.sumo_traffic.sumo_traffic import SumoTraffic
 
 ShowRoadUsers = Callable[[RoadUsersAt], None]
 
@@ -232,21 +236,16 @@ def open_traffic(resolved: ResolvedSession, console: Console, run_folder: Path |
     profile = resolved.session.environment.traffic
     if profile is None:
         return None
-    if not isinstance(resolved.world, RoadsProfile):
-        raise ProfileError("environment.traffic: needs an environment.world that is a road map (kind: roads)")
-    if profile.period_ms * console.tick_hz % 1000:
-        raise ProfileError(
-            f"environment.traffic.period_ms: value {profile.period_ms}: a whole number of ticks"
-            f" of {1000.0 / console.tick_hz:g} ms"
-        )
-    platform, world = console.platform, open_world(resolved.world)
+    roads_profile, period_ticks = roads_and_period(resolved, profile, console.tick_hz)
+    platform, world = console.platform, open_world(roads_profile)
     route, roads = world.route, roads_of(world)
     assert roads is not None, "a road map has roads"
-    period_ticks = profile.period_ms * console.tick_hz // 1000
     if profile.sumo is not None:
-        return _of_sumo(resolved, profile, console, route, roads, period_ticks, run_folder)
+        sumo = _sumo(resolved, profile, console, roads, run_folder)
+        owing = Owing(roads.road_map, roads.legs, route, console.tick_hz, sumo.signals.state)
+        return TrafficSource(sumo, platform, period_ticks, route, owing, signals_of(roads, console, sumo.signals))
     traffic = Traffic(
-        open_map(resolved.world),
+        open_map(roads_profile),
         profile,
         compiled,
         route=route,
@@ -257,40 +256,64 @@ def open_traffic(resolved: ResolvedSession, console: Console, run_folder: Path |
     return TrafficSource(traffic, platform, period_ticks, route, owing)
 
 
-def _of_sumo(
-    resolved: ResolvedSession,
-    profile: TrafficProfile,
-    console: Console,
-    route: Route,
-    roads: Roads,
-    period_ticks: int,
-    run_folder: Path | None,
-) -> TrafficSource:
-    """Return SUMO's traffic; raises ProfileError as open_traffic, and where SUMO is missing or refuses."""
+def _sumo(
+    resolved: ResolvedSession, profile: TrafficProfile, console: Console, roads: Roads, run_folder: Path | None
+) -> "SumoPort | SumoTraffic":
+    """Return SUMO round one vehicle; raises ProfileError where it is missing or refuses."""
     from simconsole.session.sumo.sumo_port import SumoPort
+
+    ego = ego_box(console.platform.initial_vehicle, console.platform)
+    if run_folder is None:
+        return sumo_beside(resolved, profile, console.tick_hz, (ego,))
+    return SumoPort(profile, roads.road_map, console.tick_hz, run_folder, ego)
+
+
+def roads_and_period(resolved: ResolvedSession, profile: TrafficProfile, tick_hz: int) -> tuple[RoadsProfile, int]:
+    """Return the roads of a session with traffic, and how many ticks lie between two steps of it.
+
+    Raises:
+        ProfileError: its world is no road map, or its period no whole number of ticks.
+    """
+    if not isinstance(resolved.world, RoadsProfile):
+        raise ProfileError("environment.traffic: needs an environment.world that is a road map (kind: roads)")
+    if profile.period_ms * tick_hz % 1000:
+        raise ProfileError(
+            f"environment.traffic.period_ms: value {profile.period_ms}: a whole number of ticks"
+            f" of {1000.0 / tick_hz:g} ms"
+        )
+    return resolved.world, profile.period_ms * tick_hz // 1000
+
+
+def sumo_beside(
+    resolved: ResolvedSession, profile: TrafficProfile, tick_hz: int, egos: tuple[Box, ...]
+) -> "SumoTraffic":
+    """Start SUMO in this process, or beside it as the profile says, with our vehicles where they start.
+
+    Raises:
+        ProfileError: SUMO is missing, or refuses.
+    """
     from simconsole.world.sumo_traffic.sumo_traffic import SumoTraffic, Surroundings
 
     assert isinstance(resolved.world, RoadsProfile)
+    world = open_world(resolved.world)
+    roads = roads_of(world)
+    assert roads is not None, "a road map has roads"
+    around = Surroundings(
+        road_map=roads.road_map,
+        net=read_map(resolved.world.map),
+        legs=roads.legs,
+        tick_hz=tick_hz,
+        egos=egos,
+        duration_s=resolved.session.scenario.duration_s,
+        ground=world.ground,
+    )
+    return SumoTraffic(profile, around)
+
+
+def signals_of(roads: Roads, console: Console, shown: RunningSignals) -> OtherSignals:
+    """Return the signals that SUMO runs on roads, as the tick of a console knows of them."""
     assert console.roads is not None  # such a world has rules
-    platform, tick_hz = console.platform, console.tick_hz
-    ego = ego_box(platform.initial_vehicle, platform)
-    traffic: SumoPort | SumoTraffic
-    if run_folder is not None:
-        traffic = SumoPort(profile, roads.road_map, tick_hz, run_folder, ego)
-    else:
-        around = Surroundings(
-            road_map=roads.road_map,
-            net=read_map(resolved.world.map),
-            legs=roads.legs,
-            tick_hz=tick_hz,
-            ego=ego,
-            duration_s=resolved.session.scenario.duration_s,
-            ground=open_world(resolved.world).ground,
-        )
-        traffic = SumoTraffic(profile, around)
-    owing = Owing(roads.road_map, roads.legs, route, tick_hz, traffic.signals.state)
-    signals = OtherSignals(traffic.signals, ahead_of_lanes(roads.road_map, roads.legs), console.roads)
-    return TrafficSource(traffic, platform, period_ticks, route, owing, signals)
+    return OtherSignals(shown, ahead_of_lanes(roads.road_map, roads.legs), console.roads)
 
 
 def ego_box(vehicle: VehicleState, platform: Platform) -> Box:

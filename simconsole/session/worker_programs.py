@@ -22,7 +22,7 @@ from simconsole.processes.shared_memory import EventCounters, Record, Ring, Text
 from simconsole.processes.worker import Worker
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.can import CanProfile
-from simconsole.profiles.vehicle import TurtlebotProfile
+from simconsole.profiles.parts.turtlebot import TurtlebotProfile
 from simconsole.profiles.view import HudProfile
 from simconsole.profiles.world import WorldProfile
 from simconsole.session.advice.advice_worker import NewestAdvice

@@ -219,6 +219,12 @@ def advance_block(previous: Row, rows: Row, console: Console) -> None:
     console.block(previous, rows, *_constants(console))
 
 
+def block_of(console: Console) -> Callable[[Row, Row], None]:
+    """Return `advance_block` of this console, for whoever calls it for a few ticks again and again."""
+    block, constants = console.block, _constants(console)
+    return lambda previous, rows: block(previous, rows, *constants)
+
+
 def _constants(console: Console) -> tuple[Row, Row, Row, Row, Row, float, int]:
     """Return what a tick takes beside the state vectors and the roads."""
     on, start = console.platform, (console.initial, console.restarted)

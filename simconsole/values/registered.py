@@ -1,12 +1,12 @@
 """What other packages have registered by an entry point: found by name, loaded, and of the type that it must be."""
 
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache
 from importlib.metadata import EntryPoint, entry_points
 from typing import NamedTuple, TypeVar
 
-from simconsole.values.errors import ProfileError, one_line
+from simconsole.values.errors import ProfileError, SimConsoleError, one_line
 
 T = TypeVar("T")
 
@@ -75,3 +75,26 @@ def bounded_values(known: Mapping[str, Bounded], given: Mapping[str, float], key
         if not bounds.lowest <= value <= bounds.highest:
             raise ProfileError(f"{key}: {name}: value {value:g}: {bounds.lowest:g} to {bounds.highest:g}")
     return {name: given.get(name, bounds.default) for name, bounds in known.items()}
+
+
+def made(make: Callable[[], T], flaws: Callable[[T], Iterator[str]], key: str) -> T:
+    """Return what a registered function makes, once it is what it must be.
+
+    Args:
+        make: calls it.
+        flaws: yields what is wrong with what it made.
+        key: opens an error: where the name stands, and the name.
+
+    Raises:
+        ProfileError: it fails, or has made something else.
+    """
+    try:
+        thing = make()
+        wrong = next(flaws(thing), None)
+    except SimConsoleError:
+        raise
+    except Exception as error:  # whatever a stranger's function does
+        raise ProfileError(f"{key}: {one_line(error)}") from error
+    if wrong is not None:
+        raise ProfileError(f"{key}: {wrong}")
+    return thing

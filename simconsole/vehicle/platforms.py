@@ -1,6 +1,7 @@
 """Vehicles by the platform name of their profile. A platform's modules load when one is built."""
 
-from simconsole.profiles.vehicle import BallProfile, OwnProfile, TurtlebotProfile, VehicleProfile
+from simconsole.profiles.parts.turtlebot import TurtlebotProfile
+from simconsole.profiles.vehicle import BallProfile, OwnProfile, VehicleProfile
 from simconsole.values.platform import NO_OBSTACLES, Ground, Obstacles, Platform, Pose
 
 

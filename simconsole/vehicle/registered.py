@@ -4,10 +4,9 @@ from collections.abc import Callable, Mapping
 from typing import Final, NamedTuple
 
 from simconsole.profiles.vehicle import OwnProfile
-from simconsole.values.errors import ProfileError, SimConsoleError, one_line
 from simconsole.values.platform import Ground, Platform, Pose
 from simconsole.values.registered import Bounded as Bounded
-from simconsole.values.registered import bounded_values, load
+from simconsole.values.registered import bounded_values, load, made
 from simconsole.vehicle.contract import shape
 
 GROUP: Final = "simconsole.vehicles"
@@ -48,13 +47,5 @@ def build_own(profile: OwnProfile, pose: Pose, ground: Ground, vehicle: OwnVehic
     values = dict(profile.parameters)
     if own.parameters is not None:
         values = bounded_values(own.parameters, values, "vehicle: parameters")
-    try:
-        platform = own.build(OwnSettings(profile, values, pose, ground))
-        wrong = next(shape(platform), None)
-    except SimConsoleError:
-        raise
-    except Exception as error:  # whatever a stranger's function does
-        raise ProfileError(f"vehicle: kind: value {profile.kind}: {one_line(error)}") from error
-    if wrong is not None:
-        raise ProfileError(f"vehicle: kind: value {profile.kind}: {wrong}")
-    return platform
+    settings = OwnSettings(profile, values, pose, ground)
+    return made(lambda: own.build(settings), shape, f"vehicle: kind: value {profile.kind}")

@@ -17,7 +17,7 @@ AHEAD_M: Final = (5.0, 10.0, 20.0)
 
 _PI: Final = 3.141592653589793
 _X, _Y, _COS, _SIN, _YAW, _CURVATURE = range(6)
-_CELL, _LAPS, _S = range(3)
+_CELL, _LAPS, _S, _LATERAL = range(4)
 
 
 class LaneView(NamedTuple):
@@ -66,21 +66,21 @@ def path_of(route: Route) -> Path:
 def place_at(path: Path, s_m: float) -> Row:
     """Return the place for `lane_view` of a vehicle that starts `s_m` along the path."""
     cell = min(int(s_m / path.cell_m), len(path.cells) - 1)
-    return np.array([cell, 0.0, s_m])
+    return np.array([cell, 0.0, s_m, 0.0])
 
 
 @kernel
-def lane_view(vector: Row, cells: Row, cell_m: float, closed: float, place: Row, seen: Row) -> bool:
+def lane_view(path: Path, vector: Row, place: Row, seen: Row) -> bool:
     """Write what is seen after a tick into `seen` and follow `place`; return whether automation drives.
 
     Args:
+        path: beside which the vehicle is; first, so that compiled code can hold it (`kernels.holding`).
         vector: the state vector.
-        cells: of the path.
-        cell_m: length of each.
-        closed: 1 where the path is closed.
-        place: cell, laps and distance along the path in m (laps included), from `place_at` or the call before.
-        seen: float64 [fields of LaneView].
+        place: cell, laps, distance along the path in m (laps included) and left of it in m, from `place_at` or the call
+            before.
+        seen: float32 or float64 [fields of LaneView].
     """
+    cells, cell_m, closed = path.cells, path.cell_m, path.closed
     vehicle = read(vector, LAYOUT.vehicle)
     count, cell, laps = len(cells), int(place[_CELL]), place[_LAPS]
     along, turned = 0.0, 0
@@ -105,6 +105,7 @@ def lane_view(vector: Row, cells: Row, cell_m: float, closed: float, place: Row,
     while heading < -_PI:
         heading += 2.0 * _PI
     lateral = dy * cells[cell, _COS] - dx * cells[cell, _SIN] - 0.5 * curvature * along * along
+    place[_LATERAL] = lateral
     seen[0] = clip(vehicle.vx_mps, -MOST.speed_mps, MOST.speed_mps)
     seen[1] = clip(lateral, -MOST.lateral_m, MOST.lateral_m)
     seen[2] = heading

@@ -4,8 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import Final, NamedTuple
 
 from simconsole.profiles.world import OwnWorldProfile
-from simconsole.values.errors import ProfileError, SimConsoleError, one_line
-from simconsole.values.registered import Bounded, bounded_values, load
+from simconsole.values.registered import Bounded, bounded_values, load, made
 from simconsole.world.contract import shape
 from simconsole.world.world import World
 
@@ -34,13 +33,5 @@ def make_own(profile: OwnWorldProfile, own: OwnWorld | None = None) -> World:
     """
     made_by = load(GROUP, profile.name, OwnWorld, "world: name") if own is None else own
     values = bounded_values(made_by.parameters, profile.parameters, "world: parameters")
-    try:
-        world = made_by.make(WorldSettings(profile, values))
-        wrong = next(shape(world), None)
-    except SimConsoleError:
-        raise
-    except Exception as error:  # whatever a stranger's function does
-        raise ProfileError(f"world: name: value {profile.name}: {one_line(error)}") from error
-    if wrong is not None:
-        raise ProfileError(f"world: name: value {profile.name}: {wrong}")
-    return world
+    settings = WorldSettings(profile, values)
+    return made(lambda: made_by.make(settings), shape, f"world: name: value {profile.name}")

@@ -10,7 +10,7 @@ from typing import Any
 from simconsole.bridge.console.command_decoder import REQUESTS, CommandDecoder
 from simconsole.bridge.console.endpoint import ConsoleBridge
 from simconsole.bridge.console.input_slots import BridgeInputs
-from simconsole.bridge.console.plan_input import PlanInput
+from simconsole.bridge.console.plan_input import AdviceInput, PlanInput
 from simconsole.bridge.console.published_tick import ONCE, OutputTopic
 from simconsole.bridge.console.road_user_topics import RoadUserTopics
 from simconsole.bridge.console.topics import Outputs
@@ -50,8 +50,8 @@ def test_output_table() -> None:
 
 
 def test_command_table() -> None:
-    plan = PlanInput(BridgeProfile(), None).topic()
-    assert f"`{plan.name}` ({plan.type})" in PAGE
+    for told in (PlanInput(BridgeProfile(), None).topic(), AdviceInput(None).topic()):
+        assert f"`{told.name}` ({told.type})" in PAGE
     topics = CommandDecoder(BridgeInputs(), BridgeProfile()).topics()
     listed = {(name, kind) for name, kind, _ in rows("What commands the console")}
     assert listed == {(f"`{row.name}`", row.type) for row in topics}

@@ -40,7 +40,6 @@ def test_replay_of_an_empty_log_sends_nothing(capsys: pytest.CaptureFixture[str]
 @pytest.mark.parametrize(
     ("words", "complaint"),
     [
-        (("replay",), "--file"),
         (("replay", "--file", "no.blf"), r"no.blf: not a CAN log"),
         (("replay", "--file", "no.txt"), r"no.txt: not a CAN log"),
         (("replay", "--file", "no.blf", "--speed", "0"), "--speed: value 0: 0.01 to 100"),

@@ -50,16 +50,16 @@ def test_it_writes_a_whole_bundle_with_report_and_scene(demo: Demo) -> None:
     assert "<svg" in report
     assert (demo.bundle / "scene.rrd").stat().st_size > 100_000
     for name in ("bundle", "report", "scene"):
-        assert any(line.split()[0] == name for line in demo.done.stdout.splitlines()), name
+        assert any(line.split()[0] == name for line in demo.done.stderr.splitlines()), name
 
 
 def test_on_a_pipe_it_shows_no_progress_and_ends_with_its_results(demo: Demo) -> None:
-    assert demo.done.stderr == ""
-    assert "\r" not in demo.done.stdout
-    assert "\x1b" not in demo.done.stdout
-    *table, last = demo.done.stdout.splitlines()
-    assert json.loads(last)["ticks"] == demo.ticks
-    named = {line.split("  ")[1].strip() for line in table}
+    assert json.loads(demo.done.stdout)["ticks"] == demo.ticks
+    assert "\r" not in demo.done.stderr
+    assert "\x1b" not in demo.done.stderr
+    lines = demo.done.stderr.splitlines()
+    assert all(line.startswith("  ") for line in lines), "nothing but the table"
+    named = {line.split("  ")[1].strip() for line in lines}
     assert {"distance", "duration", "lateral error", "tick lateness", "real-time factor"} <= named
 
 
@@ -123,7 +123,7 @@ def test_the_autopilot_keeps_to_the_path_and_to_its_speed(demo: Demo, table: Log
 
 
 def test_beside_the_figure_stands_what_the_autopilot_knew_and_when(demo: Demo) -> None:
-    (shown,) = [line.strip() for line in demo.done.stdout.splitlines() if line.strip().startswith("autopilot's link")]
+    (shown,) = [line.strip() for line in demo.done.stderr.splitlines() if line.strip().startswith("autopilot's link")]
     told = "2 cm noise of position, 0.2 deg noise of yaw, 40 ms delay, at 50 Hz"
     assert shown.removeprefix("autopilot's link").strip() == told
 

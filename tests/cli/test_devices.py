@@ -16,7 +16,7 @@ def test_devices_list_shows_a_virtual_cockpit() -> None:
         "044f:b65e": ["wheel", "pedals"],
         "044f:b660": ["shifter"],
     }
-    assert "044f:b65e" in done.stdout
+    assert "044f:b65e" in done.stderr
 
 
 def test_devices_list_without_a_cockpit_fails_and_says_so() -> None:

@@ -19,7 +19,7 @@ def test_doctor_tells_what_is_there_and_what_is_not() -> None:
     assert "any program of this machine may" in found["local programs"]
     assert "emergency stop" in found["local programs"]
     for name in found:
-        assert f"  {name} " in done.stdout
+        assert f"  {name} " in done.stderr
 
 
 def test_each_part_of_sumo_is_named_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:

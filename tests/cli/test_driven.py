@@ -73,8 +73,13 @@ def test_a_good_drive_is_told_in_a_table(wanted: list[tuple[bool, bool]]) -> Non
     assert (outcome.results["digest"], outcome.results["distance_m"]) == ("ab", 100.0)
 
 
-def test_an_interrupted_drive_has_code_130_and_a_failed_recording_1(wanted: list[tuple[bool, bool]]) -> None:
+def test_an_interrupted_drive_has_code_130_and_a_failed_recording_1(
+    wanted: list[tuple[bool, bool]], capsys: pytest.CaptureFixture[str]
+) -> None:
     outcome = finish(result(interrupted=True))
+    said = capsys.readouterr().err
+    assert said.startswith("simconsole: the drive has ended and is whole in out/it; now packing it (--no-pack) and ")
+    assert "the report" in said
     assert outcome.code == 130
     assert "12.0 s simulated, interrupted" in outcome.text
     assert finish(result(interrupted=True, recording_failure="no space")).code == 1

@@ -112,7 +112,7 @@ def test_it_ends_by_itself_when_told_so() -> None:
 def test_port_of_the_system_s_choice_is_said(tmp_path: Path) -> None:
     with Running(tmp_path, "bridge", "serve", "--port", 0, "--json") as server:
         wait_until(lambda: server.said("rosbridge at"), "the address")
-        port = int(server.out.read_text().split("rosbridge at ws://127.0.0.1:")[1].split()[0])
+        port = int(server.err.read_text().split("rosbridge at ws://127.0.0.1:")[1].split()[0])
         controller = Controller(port, lambda count, stamp: [])
         controller.start()
         wait_until(lambda: controller.odometry > 0, "odometry")
@@ -151,7 +151,7 @@ def test_it_serves_others_with_a_certificate_and_a_token(tmp_path: Path) -> None
     options = ("--tokens", made["tokens"], "--certificate", made["certificate"])
     done = simconsole("bridge", "serve", "--host", "0.0.0.0", "--port", free_port(), "--for", 0.5, *options, "--json")
     assert done.returncode == 0, done.stderr
-    assert "rosbridge at wss://0.0.0.0" in done.stdout
+    assert "rosbridge at wss://0.0.0.0" in done.stderr
 
 
 def test_our_own_server_passes_the_check(tmp_path: Path) -> None:
@@ -164,9 +164,9 @@ def test_our_own_server_passes_the_check(tmp_path: Path) -> None:
         server.process.send_signal(signal.SIGINT)
         server.end()
         controller.join(PATIENCE_S)
-    assert done.returncode == 0, done.stdout
+    assert done.returncode == 0, done.stderr
     assert results(done)["passed"] == len(results(done)["rows"])
-    assert "DEVIATION" not in done.stdout
+    assert "DEVIATION" not in done.stderr
 
 
 def test_check_of_a_server_that_is_not_there() -> None:

@@ -16,9 +16,10 @@ from simconsole.devices.setup.device_commands import Pace, check_devices, list_d
 from simconsole.devices.sources.sdl_source import SdlSource
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.faults.cockpit_faults import effect
-from simconsole.profiles.device import CockpitProfile, PedalAxis, RoleBinding
+from simconsole.profiles.device import CockpitProfile, RoleBinding
 from simconsole.profiles.faults import Unplug
 from simconsole.profiles.files.loader import load, parse, to_text
+from simconsole.profiles.parts.axes import PedalAxis
 from simconsole.values.errors import DeviceNotFound, ProfileError
 from simconsole.values.signals import NEVER_TICKS, DeviceSample, DriverInput
 from simconsole.values.validity import LIVE, LOST, STALE, UNKNOWN

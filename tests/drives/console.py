@@ -35,8 +35,8 @@ def patient(patience_s: float, *arguments: object, **changes: str) -> "subproces
 
 
 def results(done: "subprocess.CompletedProcess[str]") -> dict[str, Any]:
-    """What `--json` printed on the last line."""
-    found = json.loads(done.stdout.splitlines()[-1])
+    """What `--json` printed: nothing else is on standard output."""
+    found = json.loads(done.stdout)
     assert isinstance(found, dict)
     return found
 

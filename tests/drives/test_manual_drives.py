@@ -148,7 +148,7 @@ def test_the_command_line_lets_any_person_drive_a_session_that_names_none(tmp_pa
         words = ("--headless", "--driver", "virtual", "--person", seed, "--for", 20, "--out", tmp_path / str(seed))
         done = simconsole("drive", tmp_path / "session.yaml", *words, "--json")
         assert done.returncode == 0, done.stderr
-        assert "by the person " in done.stdout
+        assert "by the person " in done.stderr
         bundles.append(results(done)["digest"])
     assert bundles[0] != bundles[1]
 

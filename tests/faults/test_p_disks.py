@@ -151,7 +151,7 @@ def test_p01_from_the_command_line_every_command_tells_it(script: Path, tmp_path
         assert done.returncode == 1, done.stdout + done.stderr
         assert "Traceback" not in done.stderr
         assert "No space left on device" in told["recording_failure"]
-        assert "RECORDING FAILED" in done.stdout
+        assert "RECORDING FAILED" in done.stderr
         assert told["exports_failure"] == "not tried, for the recording failed"
         assert not list(bundle.glob("*.new"))
         (place / "filler").unlink()
@@ -159,7 +159,7 @@ def test_p01_from_the_command_line_every_command_tells_it(script: Path, tmp_path
             looked = simconsole(command, bundle, *more, "--json")
             assert looked.returncode == 1, (command, looked.stdout, looked.stderr)
             assert told["recording_failure"] in results(looked)["problems"], command
-            assert told["recording_failure"] in looked.stdout.splitlines(), command
+            assert told["recording_failure"] in looked.stderr.splitlines(), command
 
 
 @pytest.mark.fault("P01")

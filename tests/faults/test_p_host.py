@@ -71,7 +71,7 @@ gc.collect()
 whole_ns = min(cpu_of_a_full_collection() for _ in range(3))
 litter = Litter()
 with realtime_hints():
-    before = resident()  # locked memory is all there at once
+    before = resident()
     frozen = gc.get_freeze_count()
     gc.callbacks.append(litter.collected)
     litter.last_ns = time.process_time_ns()

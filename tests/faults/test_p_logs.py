@@ -268,12 +268,12 @@ def test_p04_from_the_command_line_damage_fails_and_a_torn_tail_is_named(unfinis
         assert torn.returncode == 0
         remark = results(torn)["remarks"][1]
         assert remark.endswith("as a drive that was killed leaves it")
-        assert remark in torn.stdout.splitlines()
+        assert remark in torn.stderr.splitlines()
         path.write_bytes(content[:-9] + bytes([content[-9] ^ 1]) + content[-8:])
         for command, *more in (["replay"], ["compare", unfinished]):
             damaged = simconsole(command, unfinished, *more, "--json")
             assert damaged.returncode == 1
             assert all("damaged, wrong checksum" in problem for problem in results(damaged)["problems"])
-            assert results(damaged)["problems"][0] in damaged.stdout.splitlines()
+            assert results(damaged)["problems"][0] in damaged.stderr.splitlines()
     finally:
         path.write_bytes(content)

@@ -13,9 +13,10 @@ from simconsole.devices.synthetic.trace_format import TraceHeader
 from simconsole.evaluation.metrics.fault_metrics import fault_spans
 from simconsole.evaluation.metrics.table import drive_of
 from simconsole.faults.schedule import SERVES, FaultClock
-from simconsole.profiles.device import CockpitProfile, ScriptProfile
+from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.faults import Fault, Onset, Place, Stuck, fault_label
 from simconsole.profiles.files.loader import load, parse, to_text
+from simconsole.profiles.parts.script import ScriptProfile
 from simconsole.profiles.person import PersonPlan
 from simconsole.profiles.scenario import ScenarioProfile
 from simconsole.profiles.session import Devices, ModeSection, Outputs, SessionProfile

@@ -3,8 +3,13 @@
 import pytest
 
 from simconsole.hud.advice import advice_label
-from simconsole.profiles.view import ENGLISH
+from simconsole.hud.view import HudMemory, view
+from simconsole.profiles.control import ControlProfile
+from simconsole.profiles.view import ENGLISH, HudProfile
+from simconsole.values.labels import notice_label
+from simconsole.values.signals import Notice
 from simconsole.world.rules.speed_advice import NO_ADVICE, STOP, Advice, Advised
+from tests.hud.test_view import settings_for, snapshot
 
 
 @pytest.mark.parametrize(
@@ -26,3 +31,25 @@ def test_band_is_told_in_whole_speeds_that_lie_in_it(
 def test_stopping_and_nothing() -> None:
     assert advice_label(STOP, ENGLISH) == "prepare to stop"
     assert advice_label(NO_ADVICE, ENGLISH) == ""
+
+
+def told(advice: Advice = NO_ADVICE, **fields: float) -> str:
+    """What the display tells below the mode."""
+    settings = settings_for(HudProfile(), ControlProfile())
+    return view(snapshot(250, **fields), 0.0, HudMemory(), settings, advice=advice)[0].notice_label
+
+
+def test_the_display_tells_advice_unless_there_is_a_notice() -> None:
+    band = Advice(Advised.SPEED, 35.0 / 3.6, 45.5 / 3.6, 45.5 / 3.6)
+    assert told() == ""
+    assert told(band) == "green at 35 to 45 km/h"
+    assert told(STOP) == "prepare to stop"
+    notice = notice_label(Notice.RED_LIGHT)
+    assert told(band, rules__red_light=1.0) == notice != ""
+
+
+def test_the_display_tells_that_traffic_is_lost_where_there_is_nothing_else_to_tell() -> None:
+    lost = {"ahead__traffic_lost": 1.0}
+    assert told(NO_ADVICE, **lost) == "traffic has failed: the road is empty"
+    assert told(STOP, **lost) == "prepare to stop"
+    assert told(NO_ADVICE, **lost, rules__red_light=1.0) == notice_label(Notice.RED_LIGHT)

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import pytest
 from websockets.sync.client import ClientConnection, connect
 
 from tests.paths import ROOT
@@ -36,6 +37,21 @@ def program(around: Mapping[str, str], *words: str) -> Iterator["subprocess.Pope
         finally:
             process.kill()
             print(process.communicate()[1])  # pytest shows it where a test fails
+
+
+def npm_packages(name: str, made: str, *packages: str) -> Path:
+    """The folder of npm packages (`NAME@VERSION`), fetched once into `name` of the cache; skip where npm cannot.
+
+    `made` is a file or folder in it that is there once it is whole.
+    """
+    folder = CACHE / name / "node_modules"
+    if not (folder / made).exists():
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        words = ["npm", "install", "--prefix", str(folder.parent), "--no-save", "--no-package-lock", "--ignore-scripts"]
+        done = subprocess.run([*words, "--no-audit", "--no-fund", *packages], capture_output=True, text=True)
+        if done.returncode:
+            pytest.skip(f"npm cannot fetch {', '.join(packages)}: {done.stderr[-300:]}")
+    return folder
 
 
 def wait_for_port(port: int) -> None:

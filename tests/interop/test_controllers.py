@@ -2,7 +2,6 @@
 
 import json
 import shutil
-import subprocess
 import sys
 import threading
 from functools import partial
@@ -13,7 +12,7 @@ import pytest
 
 from tests.drives.console import environment as headless
 from tests.interop.browser import CHROMIUM, browse
-from tests.interop.programs import CACHE, environment, program, wait_for_port
+from tests.interop.programs import environment, npm_packages, program, wait_for_port
 from tests.interop.ros2 import PYTHON, domain, needs_ros2
 from tests.paths import ROOT
 from tests.patience import PATIENCE_S, wait_until
@@ -71,12 +70,7 @@ def test_with_rclpy(tmp_path: Path) -> None:
 @pytest.fixture(scope="module")
 def roslib() -> Path:
     """The folder that the README's npm command makes; fetched once."""
-    folder = CACHE / f"roslib-{ROSLIB}"
-    if not (folder / "node_modules/roslib/build").exists():
-        folder.mkdir(parents=True, exist_ok=True)
-        words = [str(NPM), "install", "--prefix", str(folder), "--no-save", "--no-package-lock", "--ignore-scripts"]
-        subprocess.run([*words, "--no-audit", "--no-fund", f"roslib@{ROSLIB}"], check=True, capture_output=True)
-    return folder / "node_modules"
+    return npm_packages(f"roslib-{ROSLIB}", "roslib/build", f"roslib@{ROSLIB}")
 
 
 class Quiet(SimpleHTTPRequestHandler):

@@ -18,7 +18,7 @@ from simconsole.bridge.messages.ros1 import serialize_ros1
 from simconsole.bridge.protocol.message_decoding import Binary
 from simconsole.profiles.bridge import BridgeProfile
 from tests.bridge.fixtures import make_snapshot
-from tests.interop.programs import CACHE, HERE
+from tests.interop.programs import HERE, npm_packages
 from tests.patience import PATIENCE_S
 
 PACKAGES = {
@@ -47,21 +47,14 @@ Read = Callable[[list[dict[str, str]]], dict[str, Any]]
 def read(request: pytest.FixtureRequest) -> Read:
     """Give messages to the packages of one player, which npm fetches once; returns what they found."""
     scope, versions = request.param, PACKAGES[request.param]
-    folder = CACHE / f"players-{scope}-{'-'.join(versions.values())}"
-    library = folder / "node_modules" / scope / "rosmsg2-serialization"
-    if not library.exists():
-        folder.mkdir(parents=True, exist_ok=True)
-        words = ["npm", "install", "--prefix", str(folder), "--no-save", "--no-package-lock", "--ignore-scripts"]
-        names = [f"{scope}/{name}@{version}" for name, version in versions.items()]
-        done = subprocess.run(
-            [*words, "--no-audit", "--no-fund", *names, *UNDECLARED[scope]], capture_output=True, text=True
-        )
-        if done.returncode:
-            pytest.skip(f"npm cannot fetch the packages: {done.stderr[-300:]}")
+    names = [f"{scope}/{name}@{version}" for name, version in versions.items()]
+    made = f"{scope}/rosmsg2-serialization"
+    folder = npm_packages(f"players-{scope}-{'-'.join(versions.values())}", made, *names, *UNDECLARED[scope])
+    library = folder / made
     assert json.loads((library / "package.json").read_text())["version"] == versions["rosmsg2-serialization"]
 
     def found(messages: list[dict[str, str]]) -> dict[str, Any]:
-        program = [str(NODE), str(HERE / "players_program.mjs"), str(folder), scope]
+        program = [str(NODE), str(HERE / "players_program.mjs"), str(folder.parent), scope]
         lines = "".join(f"{json.dumps(message)}\n" for message in messages)
         done = subprocess.run(program, input=lines, capture_output=True, text=True, timeout=PATIENCE_S)
         assert done.returncode == 0, done.stderr

@@ -13,13 +13,12 @@ import pytest
 from mcap.reader import make_reader
 
 from simconsole.cli.main import main
-from tests.interop.programs import CACHE, HERE, environment, program, wait_for_port
+from tests.interop.programs import HERE, environment, npm_packages, program, wait_for_port
 from tests.interop.sessions import lockstep_session
 from tests.patience import PATIENCE_S
 from tests.ports import free_port
 
 VERSION = "2.1.0"
-FOLDER = CACHE / f"roslib-{VERSION}"
 TOKEN = "a-token-of-enough-letters"
 PROGRAM = str(HERE / "roslib_program.mjs")
 NODE = shutil.which("node")
@@ -30,13 +29,7 @@ pytestmark = pytest.mark.skipif(NODE is None or shutil.which("npm") is None, rea
 @pytest.fixture(scope="module")
 def node() -> Callable[..., tuple[str, ...]]:
     """The words of a Node program with roslib, which npm fetches once."""
-    library = FOLDER / "node_modules/roslib"
-    if not library.exists():
-        FOLDER.mkdir(parents=True, exist_ok=True)
-        words = ["npm", "install", "--prefix", str(FOLDER), "--no-save", "--no-package-lock", "--ignore-scripts"]
-        done = subprocess.run([*words, "--no-audit", "--no-fund", f"roslib@{VERSION}"], capture_output=True, text=True)
-        if done.returncode:
-            pytest.skip(f"npm cannot fetch roslib: {done.stderr[-300:]}")
+    library = npm_packages(f"roslib-{VERSION}", "roslib", f"roslib@{VERSION}") / "roslib"
     assert json.loads((library / "package.json").read_text())["version"] == VERSION
     return lambda *words: (str(NODE), PROGRAM, str(library / "dist/RosLib.js"), *words)
 

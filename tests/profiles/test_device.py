@@ -7,8 +7,10 @@ import msgspec
 import pytest
 from msgspec.structs import replace
 
-from simconsole.profiles.device import CockpitProfile, ScriptProfile, SteeringAssistance
+from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load, parse, profiles_folder, to_text
+from simconsole.profiles.parts.axes import SteeringAssistance
+from simconsole.profiles.parts.script import ScriptProfile
 from simconsole.values.errors import ProfileError
 
 COCKPITS = ["t500rs_th8rs", "t300rs_th8a", "g29", "gamepad", "keyboard"]

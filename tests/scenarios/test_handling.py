@@ -100,7 +100,7 @@ def test_a_value_beyond_its_limit_fails_and_is_in_the_report(
     assert (stall["passed"], launch["passed"]) == (False, True)
     assert stall["problems"] == ["end_engine_running: 0 not in 1 to inf"]
     assert launch["values"]["engine_stalled"] == 0.0
-    assert "  end_engine_running         0" in done.stdout
+    assert "  end_engine_running         0" in done.stderr
     page = (tmp_path / "report.html").read_text()
     assert page.count("<svg") == 2
     assert "stall: NOT inside its limits" in page

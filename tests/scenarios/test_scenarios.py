@@ -49,7 +49,7 @@ def test_a_changed_control_value_is_named_with_tick_and_column(copied: Path) -> 
     assert 2800 < int(tick.removeprefix("tick ")) < 3500, "from the safe stop on, as sampled twice a second"
     assert column.startswith("memory."), "the arbiter's own columns come before what the car makes of them"
     assert "np.float64" not in problem
-    assert problem in done.stdout
+    assert problem in done.stderr
     assert heads.split()[:4] == ["column", "from", "accepted", "driven"]
     assert column in columns[0]
 

@@ -192,6 +192,31 @@ def test_real_time_hints_without_any_privilege() -> None:
     assert (fifo, frozen, restored) == (False, True, True)
 
 
+LOCKED = """
+import json, mmap
+from pathlib import Path
+from simconsole.session.pacing import realtime_hints
+
+def kib(name):
+    (line,) = [line for line in Path("/proc/self/status").read_text().splitlines() if line.startswith(name)]
+    return int(line.split()[1])
+
+used = mmap.mmap(-1, 32 << 20)
+used.write(bytes(32 << 20))
+reserved = mmap.mmap(-1, 512 << 20)  # as libraries reserve it, and never touch most of it
+before_kib = kib("VmRSS")
+with realtime_hints() as missing:
+    print(json.dumps([missing, kib("VmRSS") - before_kib, kib("VmLck")]))
+"""
+
+
+def test_memory_that_is_locked_is_not_brought_in_for_that() -> None:
+    done = subprocess.run([sys.executable, "-c", LOCKED], capture_output=True, text=True, check=True)
+    missing, grown_kib, locked_kib = json.loads(done.stdout)
+    assert grown_kib < 128 * 1024, "what was only reserved takes no memory"
+    assert locked_kib > 32 * 1024 or any("locked memory" in line for line in missing)
+
+
 def test_real_time_hints_of_a_user_who_may_not_clear_reset_on_fork_again(monkeypatch: pytest.MonkeyPatch) -> None:
     class Libc:
         def __getattr__(self, name: str) -> Any:

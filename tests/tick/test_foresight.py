@@ -7,8 +7,8 @@ from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.synthetic.script import ScriptSource
 from simconsole.drivers.scripted_controller import ScriptedCommands
 from simconsole.evaluation.checks.memory_recorder import MemoryRecorder
-from simconsole.profiles.device import ScriptProfile
 from simconsole.profiles.files.loader import parse
+from simconsole.profiles.parts.script import ScriptProfile
 from simconsole.profiles.scenario import EventStep
 from simconsole.session.pacing import UnpacedPacer
 from simconsole.session.resolution import load_scenario, resolve

@@ -11,8 +11,8 @@ import pytest
 from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.synthetic.script import ScriptSource
 from simconsole.evaluation.checks.memory_recorder import MemoryRecorder
-from simconsole.profiles.device import ScriptProfile
 from simconsole.profiles.files.loader import parse
+from simconsole.profiles.parts.script import ScriptProfile
 from simconsole.profiles.session import SessionProfile
 from simconsole.recording.bundles.log import LogWriter
 from simconsole.recording.bundles.verification import verify

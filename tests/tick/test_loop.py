@@ -9,8 +9,8 @@ import pytest
 from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.synthetic.script import ScriptSource
 from simconsole.evaluation.checks.memory_recorder import MemoryRecorder
-from simconsole.profiles.device import ScriptProfile
 from simconsole.profiles.files.loader import parse
+from simconsole.profiles.parts.script import ScriptProfile
 from simconsole.profiles.session import SessionProfile
 from simconsole.session.pacing import UnpacedPacer
 from simconsole.session.resolution import resolve

@@ -66,7 +66,7 @@ def test_the_suffix_of_a_column_is_its_unit(name: str, unit: str) -> None:
 
 def test_every_unit_of_the_documented_table_is_known() -> None:
     table = (ROOT / "docs" / "units.md").read_text("utf-8")
-    suffixes = re.findall(r"`_(\w+)` \|", table)
+    suffixes = re.findall(r"`_(\w+)` \|", table.partition("Profiles are written by people")[0])
     assert len(suffixes) == 19
     assert all(units.unit_of(f"value_{suffix}") != "1" for suffix in suffixes)
 

@@ -1,7 +1,7 @@
 """The picture of a camera on the vehicle, and what projects points of the world into it, under ROS's usual names."""
 
 from collections.abc import Callable
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple, Protocol
 
 from simconsole.bridge.console.published_tick import OutputTopic, PublishedTick, quaternion
 from simconsole.bridge.messages import Registry
@@ -22,6 +22,22 @@ class CameraShot(NamedTuple):
 
     tick: int  # that it shows
     jpeg: bytes
+
+
+class Pinhole(Protocol):
+    """A camera without distortion, its axis through the middle of its picture."""
+
+    @property
+    def width_px(self) -> int:
+        """Of the picture."""
+
+    @property
+    def height_px(self) -> int:
+        """Of the picture."""
+
+    @property
+    def focal_px(self) -> float:
+        """Distance of the picture from the pinhole, in pixels."""
 
 
 ReadCamera = Callable[[], CameraShot | None]
@@ -52,18 +68,7 @@ class CameraTopics:
         shot = self._new(CAMERA_INFO)
         if shot is None:
             return None
-        profile = self._profile
-        focal, cx, cy = profile.focal_px, 0.5 * profile.width_px - 0.5, 0.5 * profile.height_px - 0.5
-        return self._info(
-            header=self._stamped(shot, tick),
-            height=profile.height_px,
-            width=profile.width_px,
-            distortion_model="plumb_bob",
-            d=[0.0] * 5,
-            k=[focal, 0.0, cx, 0.0, focal, cy, 0.0, 0.0, 1.0],
-            r=[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
-            p=[focal, 0.0, cx, 0.0, 0.0, focal, cy, 0.0, 0.0, 0.0, 1.0, 0.0],
-        )
+        return camera_info(self._info, self._stamped(shot, tick), self._profile)
 
     def _compressed_image(self, tick: PublishedTick) -> Any | None:
         shot = self._new(IMAGE)
@@ -91,4 +96,19 @@ def optical(yaw_rad: float, pitch_rad: float) -> tuple[float, float, float, floa
         aw * by - ax * bz + ay * bw + az * bx,
         aw * bz + ax * by - ay * bx + az * bw,
         aw * bw - ax * bx - ay * by - az * bz,
+    )
+
+
+def camera_info(message: Callable[..., Any], header: Any, camera: Pinhole) -> Any:
+    """Return what projects points into a camera's picture; `message` is the class of sensor_msgs/CameraInfo."""
+    focal, cx, cy = camera.focal_px, 0.5 * camera.width_px - 0.5, 0.5 * camera.height_px - 0.5
+    return message(
+        header=header,
+        height=camera.height_px,
+        width=camera.width_px,
+        distortion_model="plumb_bob",
+        d=[0.0] * 5,
+        k=[focal, 0.0, cx, 0.0, focal, cy, 0.0, 0.0, 1.0],
+        r=[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
+        p=[focal, 0.0, cx, 0.0, 0.0, focal, cy, 0.0, 0.0, 0.0, 1.0, 0.0],
     )

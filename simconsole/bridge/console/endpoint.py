@@ -8,7 +8,7 @@ from simconsole.bridge.console.counters import bridge_status, total_counts
 from simconsole.bridge.console.input_slots import BridgeInputs, OnCommand, OnEvents
 from simconsole.bridge.console.operator_acts import ACTS_MAX, OPERATE, OPERATE_TYPE, Act, OnAct, Operator
 from simconsole.bridge.console.output_schedule import OutputSchedule, ScheduledOutput, topic_names
-from simconsole.bridge.console.plan_input import OnPlan, PlanInput
+from simconsole.bridge.console.plan_input import AdviceInput, OnPlan, PlanInput
 from simconsole.bridge.console.published_tick import PublishedTick
 from simconsole.bridge.console.road_user_topics import RoadUserTopics
 from simconsole.bridge.console.surroundings import NOWHERE, Surroundings
@@ -100,7 +100,7 @@ class ConsoleBridge:
         )
         outputs = (*view_topics(self.router.registry, profile, around.view), *self._out.topics())
         self._plans = PlanInput(profile, on_plan)
-        commands = (*self._command_decoder.topics(), self._plans.topic())
+        commands = (*self._command_decoder.topics(), self._plans.topic(), AdviceInput(around.on_advice).topic())
         if around.road_users is not None:
             outputs = (*RoadUserTopics(self.router.registry, around.road_users).topics(), *outputs)
         if profile.camera is not None and around.camera is not None:

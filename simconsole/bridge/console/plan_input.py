@@ -1,4 +1,4 @@
-"""What a controller says that it plans, for the operators' scene and the log: it commands nothing."""
+"""What a controller says that it plans and was advised, for the operators' scene and the log: it commands nothing."""
 
 from collections.abc import Callable
 from typing import Any, Final
@@ -18,7 +18,12 @@ PLAN_TYPE: Final = "nav_msgs/Path"
 MOST_HZ: Final = 20
 """Newer ones that come faster are passed over."""
 
+ADVICE: Final = "/autopilot/advice"
+ADVICE_TYPE: Final = "std_msgs/String"
+
 OnPlan = Callable[[PlannedPath], None]
+OnAdvice = Callable[[str], None]
+"""Takes an advice as JSON; raises ValueError where it is none."""
 
 
 class PlanInput:
@@ -47,6 +52,26 @@ class PlanInput:
             return
         self._newest_ns = self.now_ns
         self._on_plan(PlannedPath(self.now_ns, places))
+
+
+class AdviceInput:
+    """Takes the speed advice that a controller goes by."""
+
+    def __init__(self, on_advice: OnAdvice | None) -> None:
+        """Hand it to `on_advice`."""
+        self._on_advice = on_advice
+
+    def topic(self) -> CommandTopic:
+        """Return the row of the table of command topics: nobody needs the lease for it."""
+        return CommandTopic(ADVICE, ADVICE_TYPE, self._accept, leased=False)
+
+    def _accept(self, plain: dict[str, Any] | None, message: Any, now_ns: int) -> None:
+        if self._on_advice is None:
+            return
+        try:
+            self._on_advice(message.data)
+        except ValueError as problem:
+            raise RemoteProtocolError(f"{ascii(str(problem))[1:65]} - at `$.data`") from None
 
 
 def _places(message: Any) -> NDArray[np.float64]:

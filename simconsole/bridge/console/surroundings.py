@@ -3,6 +3,7 @@
 from typing import Final, NamedTuple
 
 from simconsole.bridge.console.camera_topics import ReadCamera
+from simconsole.bridge.console.plan_input import OnAdvice
 from simconsole.bridge.console.published_tick import RobotTable
 from simconsole.bridge.console.road_user_topics import ReadRoadUsers
 from simconsole.bridge.console.topics import Route
@@ -23,6 +24,7 @@ class Surroundings(NamedTuple):
     view: ExternalView = NO_VIEW  # what the topics of `external_view` show
     robot: RobotTable | None = None  # makes the topics of what is driven, where it is a robot
     steering: SteeringLimit | None = None  # beyond it the arbiter refuses a command, and its sender is told so
+    on_advice: OnAdvice | None = None  # sees what speed advice a controller goes by
 
 
 NOWHERE: Final = Surroundings()

@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 
 from simconsole.cli.api.session import Session, load
 from simconsole.profiles.session import Start
-from simconsole.tick.advance import Console, advance_block
+from simconsole.tick.advance import Console, block_of
 from simconsole.tick.assembly import ResolvedSession, assemble
 from simconsole.values.errors import ProfileError
 from simconsole.values.host.jit import compiled, plain
-from simconsole.values.kernels import Row
+from simconsole.values.kernels import Row, holding
 from simconsole.values.signals import NO_AHEAD, NO_COMMAND, NO_EVENTS, NO_SAMPLE, Event, RemoteKind
 from simconsole.values.state_vector import INPUT_WIDTH, LAYOUT, Snapshot, TickInputs, input_vector
 from simconsole.values.units import DEG_PER_RAD
@@ -45,6 +45,7 @@ _SEQUENCE, _AGE, _KIND = _ROS.at("sequence"), _ROS.at("age_ticks"), _ROS.at("kin
 _WHEEL, _SPEED, _ACCEL = _ROS.at("road_wheel_rad"), _ROS.at("speed_mps"), _ROS.at("accel_mps2")
 _EVENTS: Final = LAYOUT.events.at("events")
 _ENGAGE_STEPS: Final = 50
+_SEEN: Final = len(LaneView._fields)
 
 
 class DrivingEnvironment(gymnasium.Env[Observation, Action]):
@@ -99,8 +100,7 @@ class DrivingEnvironment(gymnasium.Env[Observation, Action]):
         self._speed_mps, self._half_lane_m = speed_mps, half_lane_m
         self._most_rad = most_road_wheel_rad
         self._most_steps = round(longest_s * 1000.0 / step_ms)
-        self._look = compiled(lane_view)
-        self._seen = np.zeros(len(LaneView._fields))
+        self._look = holding(compiled(lane_view), self._path)
         bounds = np.array(MOST, np.float32)
         self.observation_space = gymnasium.spaces.Box(-bounds, bounds, dtype=np.float32)
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (1 if speed_mps is not None else 2,), np.float32)
@@ -122,14 +122,14 @@ class DrivingEnvironment(gymnasium.Env[Observation, Action]):
         self._console = self._console._replace(platform=there.platform, initial=there.initial)
         self._vector, self._place = state.vector, place_at(self._path, s_m)
         self._rows = _quiet_rows(self._ticks, self._console.width)
+        self._make_ticks, self._last = block_of(self._console), self._rows[-1]
         by_speed = self._speed_mps is not None
         self._rows[:, _KIND] = RemoteKind.SPEED if by_speed else RemoteKind.ACCELERATION
         columns = (_SEQUENCE, _WHEEL, _SPEED if by_speed else _ACCEL)
         self._of_sequence, self._of_wheel, self._of_asked = (self._rows[:, at] for at in columns)
         self._sequence, self._steps = 0.0, 0
         self._engage()
-        self._observe()
-        return self._observation(), {"s_m": float(self._place[2])}
+        return self._observe()[0], {"s_m": float(self._place[2])}
 
     def _started(self, s_m: float, off: NDArray[np.float64]) -> ResolvedSession:
         """Return the session that starts `s_m` along the route, off it by shares of the most."""
@@ -152,7 +152,7 @@ class DrivingEnvironment(gymnasium.Env[Observation, Action]):
         """
         for _ in range(_ENGAGE_STEPS):
             self._advance(0.0, 0.0, int(Event.REQUEST_AUTONOMOUS))
-            if self._look(self._vector, *self._path, self._place, self._seen):
+            if self._observe()[1]:
                 return
         raise ProfileError("features.control: autonomy is not granted: person_required: false, and nobody in the seat")
 
@@ -166,12 +166,12 @@ class DrivingEnvironment(gymnasium.Env[Observation, Action]):
             asked = share * (2.0 if share > 0.0 else 4.0)
         before_m = self._place.item(2)
         self._advance(wheel, asked)
-        driving = self._observe()
+        seen, driving = self._observe()
         self._steps += 1
-        off = abs(self._seen.item(1)) / self._half_lane_m
+        off = abs(self._place.item(3)) / self._half_lane_m
         ended = off > 1.0 or not driving
         reward = LEFT_LANE if ended else (self._place.item(2) - before_m) * (1.0 - off)
-        return self._observation(), reward, ended, self._steps >= self._most_steps, {}
+        return seen, reward, ended, self._steps >= self._most_steps, {}
 
     def _advance(self, road_wheel_rad: float, asked: float, events: int = 0) -> None:
         assert self._console is not None, "reset comes first"
@@ -181,20 +181,18 @@ class DrivingEnvironment(gymnasium.Env[Observation, Action]):
         self._of_wheel.fill(road_wheel_rad)
         self._of_asked.fill(asked)
         rows[0, _EVENTS] = events
-        advance_block(self._vector, rows, self._console)
-        self._vector = rows[-1].copy()
+        self._make_ticks(self._vector, rows)
+        self._vector[:] = self._last
 
-    def _observe(self) -> bool:
-        driving: bool = self._look(self._vector, *self._path, self._place, self._seen)
-        return driving
-
-    def _observation(self) -> Observation:
-        return self._seen.astype(np.float32)
+    def _observe(self) -> tuple[Observation, bool]:
+        """Return what is seen, in a new array, and whether automation drives."""
+        seen = np.empty(_SEEN, np.float32)
+        return seen, self._look(self._vector, self._place, seen)
 
     @property
     def snapshot(self) -> Snapshot:
         """The tick that the last step has ended with."""
-        return Snapshot(self._steps * self._ticks, self._resolved.session.mode.tick_hz, self._vector)
+        return Snapshot(self._steps * self._ticks, self._resolved.session.mode.tick_hz, self._vector.copy())
 
 
 def vector_environment(count: int, session: Session | str = "bridge", **options: Any) -> AsyncVectorEnv:

@@ -7,16 +7,53 @@ from simconsole.cli.arguments.subparser import command
 
 def recordings(commands: Any) -> None:
     """Add what reads, signs, packs and compares bundles."""
-    replay = command(commands, "replay", "lookup.bundles:replay", "re-simulate bundles; 0 only if every tick is equal")
-    verify = command(commands, "verify", "recordings:verify", "check every byte of a bundle, and its signature")
-    sign = command(commands, "sign", "recordings:sign", "sign a bundle, so that nobody changes it unnoticed")
+    replay = command(
+        commands,
+        "replay",
+        "lookup.bundles:replay",
+        "re-simulate bundles; 0 only if every tick is equal",
+        "",
+        "out/demo-*",
+        "out/demo-1 --set body.mass_kg=1600",
+    )
+    verify = command(
+        commands,
+        "verify",
+        "recordings:verify",
+        "check every byte of a bundle, and its signature",
+        "out/demo-1",
+        "out/demo-1 --signer lab.pub",
+    )
+    sign = command(
+        commands,
+        "sign",
+        "recordings:sign",
+        "sign a bundle, so that nobody changes it unnoticed",
+        "--new-key lab.pem",
+        "out/demo-1 --key lab.pem",
+        "out/demo-1 --remove",
+    )
     sign.add_argument("bundle", nargs="?", metavar="BUNDLE", help="the folder that a drive has written")
     sign.add_argument("--key", metavar="FILE", help="the private key to sign with, Ed25519 in PEM")
     sign.add_argument("--name", default="", metavar="TEXT", help="who signs, for people to read")
     sign.add_argument("--new-key", metavar="FILE", help="make a key there, and its public half in FILE.pub")
     sign.add_argument("--remove", action="store_true", help="take the signature away, to change the bundle")
-    report = command(commands, "report", "recordings:report", "the HTML report of a bundle, or of two side by side")
-    view = command(commands, "view", "recordings:view", "show a drive in rerun: a bundle's, or the one that goes on")
+    report = command(
+        commands,
+        "report",
+        "recordings:report",
+        "the HTML report of a bundle, or of two side by side",
+        "out/demo-1",
+        "out/demo-1 out/demo-2 --out both.html",
+    )
+    view = command(
+        commands,
+        "view",
+        "recordings:view",
+        "show a drive in rerun: a bundle's, or the one that goes on",
+        "",
+        "out/demo-1 --browser",
+    )
     replay.add_argument(
         "bundles", nargs="*", metavar="BUNDLE", help="folders that drives have written (default: the newest in out)"
     )
@@ -31,13 +68,24 @@ def recordings(commands: Any) -> None:
     view.add_argument("--port", type=int, default=0, help="serve it to native viewers there")
     view.add_argument("--web-port", type=int, default=0, help="and to browsers there (default: free ports)")
     view.add_argument("--memory", default="1GiB", metavar="SIZE", help="what is kept for viewers who join late")
-    pack = command(commands, "pack", "recordings:pack", "make the logs of bundles small; all commands read both forms")
-    unpack = command(commands, "unpack", "recordings:unpack", "make the logs of packed bundles again, byte for byte")
+    pack = command(
+        commands, "pack", "recordings:pack", "make the logs of bundles small; all commands read both forms", "out/*"
+    )
+    unpack = command(
+        commands, "unpack", "recordings:unpack", "make the logs of packed bundles again, byte for byte", "out/demo-1"
+    )
     for one in (pack, unpack):
         one.add_argument("bundles", nargs="+", metavar="BUNDLE", help="the folder that a drive has written")
-    compare = command(commands, "compare", "recordings:compare", "find every field in which two bundles differ")
-    compare.add_argument("bundle", metavar="A")
-    compare.add_argument("other", metavar="B")
+    compare = command(
+        commands,
+        "compare",
+        "recordings:compare",
+        "find every field in which two bundles differ",
+        "out/demo-1 out/demo-2",
+        "out/demo-1 out/demo-2 --tolerances small.yaml",
+    )
+    compare.add_argument("bundle", metavar="A", help="the folder that a drive has written")
+    compare.add_argument("other", metavar="B", help="that of another drive")
     replay.add_argument(
         "--set",
         action="append",
@@ -52,7 +100,14 @@ def recordings(commands: Any) -> None:
 
 def exchange(commands: Any) -> None:
     """Add export and import."""
-    export = command(commands, "export", "exchange:export_bundle", "write a bundle in a format of other tools")
+    export = command(
+        commands,
+        "export",
+        "exchange:export_bundle",
+        "write a bundle in a format of other tools",
+        "out/demo-1 --to csv --columns vehicle.* --rate 50",
+        "out/demo-1 --to mcap --layout",
+    )
     export.add_argument("bundle", metavar="BUNDLE", help="the folder that a drive has written")
     export.add_argument("--to", required=True, choices=("mcap", "rosbag2", "csv", "parquet"))
     export.add_argument("--out", metavar="PATH", help="the new file or folder (default: beside the bundle)")
@@ -64,7 +119,13 @@ def exchange(commands: Any) -> None:
     export.add_argument("--labels", action="store_true", help="csv, parquet: modes and reasons as words")
     export.add_argument("--layout", action="store_true", help="mcap, rosbag2: a layout for Foxglove beside it")
 
-    into = command(commands, "import", "exchange:import_bag", "make a driver's trace from a bag of any system")
+    into = command(
+        commands,
+        "import",
+        "exchange:import_bag",
+        "make a driver's trace from a bag of any system",
+        "lab.bag --topic /joy --out trace.csv",
+    )
     into.add_argument("bag", metavar="BAG", help="an .mcap, .bag or .db3 file, or a folder of rosbag2")
     into.add_argument("--to", choices=("trace",), default="trace")
     into.add_argument("--out", metavar="FILE", default="trace.csv", help="the trace (default: trace.csv)")
@@ -80,7 +141,15 @@ def exchange(commands: Any) -> None:
 
 def video(commands: Any) -> None:
     """Add video."""
-    video = command(commands, "video", "video:video", "a bundle as a video: the road, the instruments, who drives")
+    video = command(
+        commands,
+        "video",
+        "video:video",
+        "a bundle as a video: the road, the instruments, who drives",
+        "out/demo-1",
+        "out/demo-1 --from 140 --to 150 --camera chase",
+        "out/demo-1 --png 140 hand_over.png",
+    )
     video.add_argument("bundle", metavar="BUNDLE", help="the folder that a drive has written")
     video.add_argument("--out", metavar="FILE", help="the new .mp4 (default: BUNDLE.mp4, beside the bundle)")
     video.add_argument("--camera", choices=("driver", "chase", "bird"), default="driver")

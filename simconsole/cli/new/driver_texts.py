@@ -2,22 +2,8 @@
 
 from typing import Final
 
-PROJECT: Final = """\
-[build-system]
-requires = ["hatchling"]
-build-backend = "hatchling.build"
-
-[project]
-name = "$name"
-version = "0.1.0"
-dependencies = ["simconsole"]
-
-[project.entry-points."simconsole.controllers"]
-$name = "$name:CONTROLLER"
-
-[tool.hatch.build.targets.wheel]
-only-include = ["$name.py"]
-"""
+ENTRY: Final = ("simconsole.controllers", "CONTROLLER")
+"""The group of its entry point, and what that names in its module."""
 
 DRIVER: Final = '''\
 """$name: a controller that is called by its name. `pip install -e .` registers it.

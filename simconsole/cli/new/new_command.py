@@ -12,10 +12,33 @@ from simconsole.cli.outcome import Outcome
 from simconsole.profiles.files.loader import find
 from simconsole.values.errors import ProfileError
 
+_PROJECT: Final = """\
+[build-system]
+requires = ["hatchling"]
+build-backend = "hatchling.build"
+
+[project]
+name = "$name"
+version = "0.1.0"
+dependencies = ["simconsole"]
+
+[project.entry-points."$group"]
+$name = "$name:$registered"
+
+[tool.hatch.build.targets.wheel]
+only-include = ["$name.py"]
+"""
+
+
+def _project(group: str, registered: str) -> str:
+    """Return the pyproject.toml of a package of one module, which registers what stands in it."""
+    return Template(_PROJECT).safe_substitute(group=group, registered=registered)
+
+
 KINDS: Final = {
     "controller": {"$name.py": texts.CONTROLLER, "test_$name.py": texts.TEST_CONTROLLER},
     "driver": {
-        "pyproject.toml": driver_texts.PROJECT,
+        "pyproject.toml": _project(*driver_texts.ENTRY),
         "$name.py": driver_texts.DRIVER,
         "$name.yaml": driver_texts.SESSION,
         "test_$name.py": driver_texts.TEST,
@@ -23,19 +46,19 @@ KINDS: Final = {
     "scenario": {"$name.yaml": texts.SCENARIO, "test_$name.py": texts.TEST_SCENARIO},
     "vehicle": {"test_$name.py": texts.TEST_VEHICLE},
     "platform": {
-        "pyproject.toml": platform_texts.PROJECT,
+        "pyproject.toml": _project(*platform_texts.ENTRY),
         "$name.py": platform_texts.PLATFORM,
         "$name.yaml": platform_texts.PROFILE,
         "test_$name.py": platform_texts.TEST,
     },
     "metric": {
-        "pyproject.toml": metric_texts.PROJECT,
+        "pyproject.toml": _project(*metric_texts.ENTRY),
         "$name.py": metric_texts.METRIC,
         "test_$name.py": metric_texts.TEST,
     },
     "world": {"$name.plan.yaml": texts.WORLD_PLAN, "test_$name.py": texts.TEST_WORLD},
     "place": {
-        "pyproject.toml": world_texts.PROJECT,
+        "pyproject.toml": _project(*world_texts.ENTRY),
         "$name.py": world_texts.WORLD,
         "$name.yaml": world_texts.PROFILE,
         "test_$name.py": world_texts.TEST,
@@ -43,6 +66,11 @@ KINDS: Final = {
     "session": {"$name.yaml": texts.SESSION, "test_$name.py": texts.TEST_SESSION},
 }
 """Files of each kind; a vehicle's profile, a world and a golden are made from what is there."""
+SCHEMAS: Final = {
+    **{"driver": "session", "scenario": "scenario", "vehicle": "vehicle", "platform": "vehicle"},
+    **{"world": "plan", "place": "world", "session": "session"},
+}
+"""Of the YAML file of each kind: the name of its schema, as `simconsole explain --schemas` writes it."""
 BEGUN: Final = "hatchback"
 _NAME: Final = re.compile(r"[a-z][a-z0-9_]{0,40}")
 
@@ -64,6 +92,7 @@ def new(options: Namespace) -> Outcome:
     }
     if options.kind == "vehicle":
         files[f"{name}.yaml"] = _vehicle(name)
+    files = {file: _schema_line(options.kind, folder) * file.endswith(".yaml") + text for file, text in files.items()}
     made = [*files, *({"world": [f"{name}.yaml"], "scenario": [f"golden/{name}.csv"]}.get(options.kind, []))]
     for file in made:
         if (folder / file).exists():
@@ -77,6 +106,12 @@ def new(options: Namespace) -> Outcome:
     _complete(options.kind, folder, name)
     paths = sorted(str(folder / file) for file in made)
     return Outcome(0, {"files": paths}, "\n".join((*paths, f"pytest {folder / f'test_{name}.py'}")))
+
+
+def _schema_line(kind: str, folder: Path) -> str:
+    """Return the line that tells editors the schema of a YAML file, where the folder has it; else nothing."""
+    schema = f"schemas/{SCHEMAS.get(kind)}.schema.json"
+    return f"# yaml-language-server: $schema={schema}\n" if (folder / schema).is_file() else ""
 
 
 def _vehicle(name: str) -> str:

@@ -2,22 +2,8 @@
 
 from typing import Final
 
-PROJECT: Final = """\
-[build-system]
-requires = ["hatchling"]
-build-backend = "hatchling.build"
-
-[project]
-name = "$name"
-version = "0.1.0"
-dependencies = ["simconsole"]
-
-[project.entry-points."simconsole.worlds"]
-$name = "$name:WORLD"
-
-[tool.hatch.build.targets.wheel]
-only-include = ["$name.py"]
-"""
+ENTRY: Final = ("simconsole.worlds", "WORLD")
+"""The group of its entry point, and what that names in its module."""
 
 WORLD: Final = '''\
 """$name: a world of one's own. `pip install -e .` registers it; a session names `$name.yaml` beside it.

@@ -32,6 +32,7 @@ def scenario(options: Namespace) -> Outcome:
         vehicle=options.vehicle,
         lane_m=options.lane_width,
         partly=options.partly,
+        parameters=_given(options.parameter),
     )
     lost = [str(one) for one in found.left if one.changes]
     noted = [str(one) for one in found.left if not one.changes]
@@ -44,3 +45,15 @@ def scenario(options: Namespace) -> Outcome:
     results = {"file": str(out), "left_out": lost, "notes": noted, "actors": len(found.profile.actors)}
     lines = [str(out), *(f"left out: {line}" for line in lost), *(f"note: {line}" for line in noted)]
     return Outcome(0, results, "\n".join(lines))
+
+
+def _given(words: list[str]) -> dict[str, str]:
+    """Return the values of NAME=VALUE.
+
+    Raises:
+        ProfileError: one is none.
+    """
+    for word in words:
+        if not word.partition("=")[0] or "=" not in word:
+            raise ProfileError(f"command line: --parameter: value {word}: NAME=VALUE")
+    return {name: value for name, _, value in (word.partition("=") for word in words)}

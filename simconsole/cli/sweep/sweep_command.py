@@ -14,7 +14,7 @@ from simconsole.evaluation.sweep.engines import drive_here, drive_on_dask
 from simconsole.evaluation.sweep.journal import Journal
 from simconsole.evaluation.sweep.plan import Plan, load_plan
 from simconsole.evaluation.sweep.results import RESULTS, write_results
-from simconsole.evaluation.sweep.task import GOOD, Task, TaskResult, drive_into
+from simconsole.evaluation.sweep.task import GOOD, Task, TaskResult
 from simconsole.values.errors import ProfileError
 
 PAGE = "sweep.html"
@@ -68,6 +68,10 @@ def _one(plan: Plan, index: int, out: str | None) -> Outcome:
     """Drive one of the plan's drives in this process, and keep its bundle."""
     if not 0 <= index < len(plan.tasks):
         raise ProfileError(f"command line: --drive: value {index}: 0 to {len(plan.tasks) - 1}")
+    from simconsole.evaluation.sweep.driving import (
+        drive_into,
+    )  # half of what a sweep would load, which drives elsewhere
+
     task, folder = plan.tasks[index], Path(out or Path("out") / f"sweep-drive-{index}")
     result = drive_into(task, folder)
     rows = [("drive", f"{index}: {task.source}"), ("ended", result.outcome), ("digest", result.digest)]

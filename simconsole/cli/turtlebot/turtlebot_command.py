@@ -17,7 +17,8 @@ from simconsole.cli.progress import Progress
 from simconsole.evaluation.robots.mission_figure import mission_svg
 from simconsole.evaluation.robots.mission_result import MissionResult, mission_result
 from simconsole.processes.lifetimes import ATTACHED, end, spawn
-from simconsole.profiles.vehicle import OdometryErrors, TurtlebotProfile
+from simconsole.profiles.parts.turtlebot import OdometryErrors, TurtlebotProfile
+from simconsole.profiles.session import SessionProfile
 from simconsole.recording.bundles.manifest import read_manifest
 from simconsole.session.fleet.fleet_drive import drive_fleet
 from simconsole.session.fleet.members import members
@@ -44,7 +45,7 @@ def turtlebot(options: Namespace) -> Outcome:
     """
     began_s = sum(os.times()[:4])
     folder = Path(options.out) if options.out else Path("out") / time.strftime("turtlebot-%Y%m%d-%H%M%S")
-    resolved = _resolved(options.session, options.seed)
+    resolved = _resolved(options.session, options.seed, options.fail)
     arena = _arena(resolved)
     with Progress("robots") as progress:
         driven = _driven(resolved, folder, options.objective, progress)
@@ -86,11 +87,13 @@ def _text(result: MissionResult, plain: dict[str, Any], folder: Path) -> str:
     return f"{result.text()}\n{table(rows)}"
 
 
-def _resolved(name: str, seed: int) -> ResolvedSession:
-    """Return the session with errors drawn from the seed, on a port that the system chooses."""
+def _resolved(name: str, seed: int, fail: tuple[str, float] | None) -> ResolvedSession:
+    """Return the session with errors drawn from the seed, on a port that the system chooses; one robot may fail."""
     session = load_session(name)
     if not session.scenario.platforms or session.outputs.bridge is None:
         raise ProfileError(f"{name}: scenario.platforms: value missing: the robots of the team, and outputs.bridge")
+    if fail is not None:
+        session = failing(session, *fail)
     bridge = msgspec.to_builtins(session.outputs.bridge)
     changed = {**bridge, "port": 0, "link": {**bridge["link"], "seed": seed}}
     resolved = resolve(override(session, outputs={"bridge": changed}, mode={"answer_timeout_s": PATIENCE_S}))
@@ -100,6 +103,19 @@ def _resolved(name: str, seed: int) -> ResolvedSession:
         for robot in resolved.fleet
     )
     return msgspec.structs.replace(resolved, fleet=fleet)
+
+
+def failing(session: SessionProfile, robot: str, at_s: float) -> SessionProfile:
+    """Return the session with a robot that hears no command from a time on: it is that of the seat, which has faults.
+
+    Raises:
+        ProfileError: there is no such robot, or another one has the session's faults.
+    """
+    scenario = session.scenario
+    if scenario.faults and robot != (scenario.seat or scenario.platforms[0].name):
+        raise ProfileError(f"--fail: value {robot}: the robot of scenario.seat, which has faults already")
+    faults = [*msgspec.to_builtins(scenario.faults), {"kind": "silent", "at_s": at_s}]
+    return override(session, scenario={"seat": robot, "faults": faults})
 
 
 def _arena(resolved: ResolvedSession) -> ArenaWorld:
@@ -142,7 +158,7 @@ def _driven(resolved: ResolvedSession, folder: Path, objective: str, progress: P
 
 def _arguments(resolved: ResolvedSession, url: str, folder: Path, objective: str) -> list[str]:
     session = resolved.session
-    arguments = ["-m", "simconsole.drivers.robots.nodes.program", "team", ATTACHED, "--url", url]
+    arguments = ["-m", "simconsole.drivers.robots.nodes.program", "team", ATTACHED, "--lockstep", "--url", url]
     arguments += ["--arena", session.environment.world or "", "--objective", objective]
     arguments += ["--out", str(folder), "--wait", f"{PATIENCE_S:g}"]
     for part in members(resolved).values():

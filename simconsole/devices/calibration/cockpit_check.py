@@ -4,7 +4,8 @@ from typing import Any, Final
 
 from simconsole.devices.calibration.calibrator import calibrate, travel
 from simconsole.devices.calibration.cockpit_settings import NOBODY, CockpitSettings, button_bits, cockpit_settings
-from simconsole.profiles.device import CockpitProfile, PedalAxis
+from simconsole.profiles.device import CockpitProfile
+from simconsole.profiles.parts.axes import PedalAxis
 from simconsole.values.signals import NO_SAMPLE, Button, DeviceSample, DriverInput
 from simconsole.values.units import DEG_PER_RAD
 from simconsole.values.validity import LOST, STALE, is_trusted

@@ -3,7 +3,8 @@
 import math
 from typing import Final, NamedTuple
 
-from simconsole.profiles.device import ButtonBinding, Buttons, CockpitProfile, PedalAxis
+from simconsole.profiles.device import ButtonBinding, Buttons, CockpitProfile
+from simconsole.profiles.parts.axes import PedalAxis
 from simconsole.values.signals import DriverInput
 from simconsole.values.units import RAD_PER_DEG
 

@@ -7,7 +7,8 @@ import math
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
-from simconsole.profiles.device import MAX_BUTTONS, MIN_TRAVEL_RAW, DeviceKey, PedalAxis, WheelAxis
+from simconsole.profiles.device import MAX_BUTTONS, DeviceKey
+from simconsole.profiles.parts.axes import MIN_TRAVEL_RAW, PedalAxis, WheelAxis
 from simconsole.values.errors import DeviceError
 
 MOVED_RAW: Final = MIN_TRAVEL_RAW

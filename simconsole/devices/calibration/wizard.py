@@ -25,13 +25,12 @@ from simconsole.profiles.device import (
     Buttons,
     CockpitProfile,
     DeviceKey,
-    PedalAxis,
     Pedals,
     Provenance,
     RoleBinding,
     Shifter,
-    WheelAxis,
 )
+from simconsole.profiles.parts.axes import PedalAxis, WheelAxis
 from simconsole.values.errors import DeviceError
 
 Ask = Callable[[str, str], str]

@@ -16,7 +16,8 @@ from simconsole.devices.sources.trace_files import TraceWriter
 from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
 from simconsole.devices.synthetic.script import ScriptSource
 from simconsole.devices.synthetic.trace_format import TraceHeader
-from simconsole.profiles.device import Buttons, CockpitProfile, ScriptPoint, ScriptProfile
+from simconsole.profiles.device import Buttons, CockpitProfile
+from simconsole.profiles.parts.script import ScriptPoint, ScriptProfile
 from simconsole.values.errors import DeviceError
 from simconsole.values.signals import DeviceSample
 from simconsole.values.units import RAD_PER_DEG

@@ -6,8 +6,9 @@ from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.synthetic.keyboard import KeyboardSource, Keys
 from simconsole.devices.synthetic.script import ScriptSource
 from simconsole.devices.synthetic.steering_assistance import assistance_of
-from simconsole.profiles.device import CockpitProfile, ScriptProfile
+from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import find, load
+from simconsole.profiles.parts.script import ScriptProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.protocols import DeviceSource
 

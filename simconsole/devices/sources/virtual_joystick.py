@@ -10,7 +10,8 @@ from typing import Any, Final, NamedTuple
 
 from simconsole.devices.sources import sdl_runtime, usb_places
 from simconsole.devices.sources.sdl_library import loaded_sdl
-from simconsole.profiles.device import CockpitProfile, DeviceKey, PedalAxis
+from simconsole.profiles.device import CockpitProfile, DeviceKey
+from simconsole.profiles.parts.axes import PedalAxis
 from simconsole.values.errors import DeviceError
 
 _WHEEL_TYPE: Final = 2

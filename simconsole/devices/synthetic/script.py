@@ -7,7 +7,7 @@ from typing import Final
 
 from simconsole.devices.calibration.cockpit_settings import CockpitSettings
 from simconsole.devices.calibration.inverse_calibration import Intent, pedal_raw, raw_sample, wheel_raw
-from simconsole.profiles.device import ScriptProfile
+from simconsole.profiles.parts.script import ScriptProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.input_table import InputTable
 from simconsole.values.kernels import Row

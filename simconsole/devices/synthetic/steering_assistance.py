@@ -10,7 +10,7 @@ from typing import NamedTuple
 from simconsole.devices.calibration.calibrator import wheel_angle
 from simconsole.devices.calibration.cockpit_settings import CockpitSettings
 from simconsole.devices.calibration.inverse_calibration import wheel_raw
-from simconsole.profiles.device import WheelAxis
+from simconsole.profiles.parts.axes import WheelAxis
 from simconsole.values.protocols import DeviceSource
 from simconsole.values.signals import DeviceSample
 from simconsole.values.state_vector import Snapshot

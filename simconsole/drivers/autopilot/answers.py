@@ -18,6 +18,7 @@ from simconsole.drivers.path_tracker.tracker_settings import GATE, TIMING, CarMo
 from simconsole.drivers.path_tracker.tracking_statistics import TrackingStatistics
 from simconsole.world.roads.road_map import Array
 from simconsole.world.route import Route
+from simconsole.world.rules.speed_advice import NO_ADVICE, Advice
 
 _LAWS: Final = {"pure_pursuit": pure_pursuit, "stanley": stanley}
 _END_M: Final = 0.5
@@ -54,6 +55,7 @@ class Answers:
         self._obeys = lights is not None or yields is not None
         self.statistics = TrackingStatistics()
         self._withholds = False
+        self._told = NO_ADVICE
         self._newest_s = -math.inf
 
     def answer(self, seen: VehicleMotion, engaged: bool, stamp_s: float) -> TrackerCommand | None:
@@ -97,6 +99,13 @@ class Answers:
             None if self._yields is None else self._yields.stop(s_m, speed_mps, stamp_s),
         )
         return min((stop for stop in stops if stop is not None), default=None)
+
+    def advice(self) -> Advice | None:
+        """Return what it goes by, where that is another than at the last call; None: the same, or none is wanted."""
+        if self._advised is None or self._advised.advice == self._told:
+            return None
+        self._told = self._advised.advice
+        return self._told
 
     def planned(self, seen: VehicleMotion) -> Iterator[Place]:
         """Yield the places that are planned from what was answered last; none while no commands are given."""

@@ -31,9 +31,12 @@ from simconsole.values.labels import mode_label
 from simconsole.values.signals import Mode
 from simconsole.world.kinds.worlds import open_world
 from simconsole.world.roads.road_world import roads_of
+from simconsole.world.rules.speed_advice import to_bytes
 
 ODOMETRY: Final = "/odom"
 MODE: Final = "/console/mode"
+ADVICE: Final = "/autopilot/advice"
+ADVICE_TYPE: Final = "std_msgs/String"
 COMMAND: Final = "/control/command/control_cmd"
 CONTROL: Final = "autoware_control_msgs/Control"
 
@@ -54,10 +57,11 @@ class Topics(NamedTuple):
     signals: str
     road_users: str
     plan: str
+    advice: str
 
 
 STANDARD: Final = Topics(
-    odometry=ODOMETRY, mode=MODE, command=COMMAND, signals=SIGNALS, road_users=ROAD_USERS, plan=PLAN
+    odometry=ODOMETRY, mode=MODE, command=COMMAND, signals=SIGNALS, road_users=ROAD_USERS, plan=PLAN, advice=ADVICE
 )
 
 
@@ -123,6 +127,8 @@ def run(
         client.advertise(topics.command, CONTROL)
         if plan_hz > 0.0:
             client.advertise(topics.plan, PLAN_TYPE)
+        if speed_advice:
+            client.advertise(topics.advice, ADVICE_TYPE)
         client.subscribe(topics.odometry, "nav_msgs/Odometry", reads=Odometry)
         client.subscribe(topics.mode, "std_msgs/String")
         if lights is not None:
@@ -187,6 +193,8 @@ def _answer(
         stamp = message.header.stamp
         stamp_s = stamp.sec + stamp.nanosec * 1e-9
         answer = answers.answer(seen, engaged, stamp_s)
+        if (advice := answers.advice()) is not None:  # before the command, with which a console in lockstep goes on
+            client.publish(topics.advice, {"data": to_bytes(advice).decode()})
         if answer is not None:
             fill_command(command, stamp, answer)
             client.publish(topics.command, command)

@@ -3,7 +3,8 @@
 from typing import Final
 
 from simconsole.drivers.path_tracker.tracker_settings import HATCHBACK, CarModel
-from simconsole.profiles.vehicle import AxleProfile, CarProfile, VehicleProfile
+from simconsole.profiles.parts.chassis import AxleProfile
+from simconsole.profiles.vehicle import CarProfile, VehicleProfile
 from simconsole.values.units import RAD_PER_DEG, STANDARD_GRAVITY_MPS2
 
 AT_WORK: Final = 11.0 / 12.0

@@ -49,7 +49,7 @@ def map_errors(grid: Grid, outlines: Outlines) -> MapErrors:
     return MapErrors(
         precision=float(_widened(true)[whole].mean()),
         recall=float(_widened(whole)[true].mean()),
-        wall_m=float(_to_outlines(middles, outlines).mean()),
+        wall_m=float(to_outlines(middles, outlines).mean()),
     )
 
 
@@ -76,7 +76,7 @@ def _widened(mask: Mask) -> Mask:
     return wide
 
 
-def _to_outlines(places: Array, outlines: Outlines) -> Array:
+def to_outlines(places: Array, outlines: Outlines) -> Array:
     """Return the distance of each place [N, 2] from the nearest outline."""
     nearest = np.full(len(places), np.inf)
     for ax, ay, bx, by in outlines.segments.tolist():

@@ -11,6 +11,8 @@ MAP_M: Final = 1e5
 _VEHICLES: Final = {"car": "car", "van": "van", "truck": "van"}
 _WALKERS: Final = {"pedestrian": "pedestrian"}
 _BAD: Final = re.compile(r"[^A-Za-z0-9_.:-]", re.ASCII)
+UNUSED: Final = "nobody is controlled by it: the vehicle has its own driver, others their acts"
+"""What is said of a controller."""
 _SILENT: Final = ("ParameterDeclarations", "Performance", "Axles", "Properties", "BoundingBox")
 
 
@@ -95,7 +97,7 @@ def _entity(source: Source, element: Element, label: str) -> Entity | None:
     for child in element.children:
         if child.name == "ObjectController":
             if child.children:
-                source.note(child, "nobody is controlled by it: the vehicle has its own driver, others their acts")
+                source.note(child, UNUSED)
         elif child.name in ("Vehicle", "Pedestrian") and found is None:
             kinds, attribute = (
                 (_VEHICLES, "vehicleCategory") if child.name == "Vehicle" else (_WALKERS, "pedestrianCategory")

@@ -1,10 +1,11 @@
 """From an OpenSCENARIO file to a scenario of the console."""
 
 import math
+from collections.abc import Mapping
 from typing import Any, Final, NamedTuple
 
 from simconsole.evaluation.openscenario.entities import Entity, actor, entities
-from simconsole.evaluation.openscenario.reading import MOST_TOLD, Left, Source, parts_of
+from simconsole.evaluation.openscenario.reading import DECLARATIONS, MOST_TOLD, Left, Source, parts_of
 from simconsole.evaluation.openscenario.storyboard import Told, storyboard
 from simconsole.profiles.scenario import ScenarioProfile
 from simconsole.profiles.validation import convert
@@ -20,6 +21,7 @@ _NOTED: Final = {
     "RoadNetwork": "no road map is read: environment.world of the session",
 }
 _NO_CATALOGUES: Final = "CatalogLocations"
+_VALUES: Final = "ParameterValueDistribution"
 
 
 class Imported(NamedTuple):
@@ -38,6 +40,7 @@ def imported(
     vehicle: str = "hatchback",
     lane_m: float = LANE_M,
     partly: bool = False,
+    parameters: Mapping[str, str] | None = None,
 ) -> Imported:
     """Return an OpenSCENARIO file as a scenario.
 
@@ -51,6 +54,7 @@ def imported(
         vehicle: the profile that drives it.
         lane_m: how wide the lanes are that vehicles change to: no map is read.
         partly: import what is understood, even if the drive is another one then.
+        parameters: values of those that the file declares, in the place of its own.
 
     Raises:
         ProfileError: no OpenSCENARIO, something cannot be read, or is not understood and changes the drive; names the
@@ -58,6 +62,10 @@ def imported(
     """
     source = Source(origin)
     parts = parts_of(content, origin)
+    if _VALUES in parts:
+        raise source.error(
+            parts[_VALUES], "values for another file, which is imported with them: --parameter NAME=VALUE"
+        )
     for name in ("FileHeader", "Entities", "Storyboard"):
         if name not in parts:
             raise ProfileError(f"{origin}: <{name}>: value missing: a scenario, and no catalogue")
@@ -68,8 +76,9 @@ def imported(
         elif name not in _SILENT:
             source.refuse(part)
     _check_version(source, parts["FileHeader"])
-    if "ParameterDeclarations" in parts:
-        _declare(source, parts["ParameterDeclarations"])
+    if DECLARATIONS in parts:
+        source.declare(parts[DECLARATIONS], parameters)
+    _check_given(origin, source.parameters, parameters or {})
     known = entities(source, parts["Entities"])
     driven = _ego(source, parts["Entities"], known, ego)
     told = storyboard(source, parts["Storyboard"], driven, known, lane_m)
@@ -87,17 +96,10 @@ def _check_version(source: Source, element: Element) -> None:
         raise source.error(element, f"revMajor: value {major!a}: 1")
 
 
-def _declare(source: Source, element: Element) -> None:
-    for one in source.children(element, "ParameterDeclaration"):
-        name = source.text(one, "name")
-        if name in source.parameters:
-            raise source.error(one, f"name: value {name!a}: another name for each")
-        for constraint in one.children:
-            source.note(constraint, "not checked")
-        value = one.attributes.get("value")
-        if value is None or value.startswith("$"):
-            raise source.error(one, "value: a plain value")
-        source.parameters[name] = value
+def _check_given(origin: str, declared: Mapping[str, str], given: Mapping[str, str]) -> None:
+    for name in given:
+        if name not in declared:
+            raise ProfileError(f"{origin}: --parameter: value {name}: one of {', '.join(declared) or 'none'}")
 
 
 def _ego(source: Source, element: Element, known: dict[str, Entity], wanted: str | None) -> str:
@@ -133,9 +135,12 @@ def _scenario(
     if own is not None and own.place is not None:
         yaw_deg = math.degrees(math.remainder(own.place.yaw_rad or 0.0, math.tau))
         plain["session"]["scenario"]["start"] = {"x_m": own.place.x_m, "y_m": own.place.y_m, "yaw_deg": yaw_deg}
-    if speed_mps > 0.0:
+    events = [*told.acts.get(driven, ())]
+    if speed_mps > 0.0 or events:
         plain["remote"] = [{"start_s": 0.1, "end_s": duration_s, "kind": "speed", "speed_mps": speed_mps}]
-        plain["events"] = [{"event": "request_autonomous", "at_s": 0.5}]
+        if own is None or own.active:
+            events.insert(0, {"event": "request_autonomous", "at_s": 0.5})
+        plain["events"] = events
     if actors:
         plain["actors"] = actors
     return plain

@@ -3,6 +3,7 @@
 import math
 import re
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from typing import Final, NamedTuple
 
 from simconsole.values.errors import ProfileError
@@ -11,6 +12,7 @@ from simconsole.world.sumo.xml_guard import Element, read_elements, shown
 DEPTH: Final = 40
 """A vertex of a trajectory lies 18 deep."""
 ROOT: Final = "OpenSCENARIO"
+DECLARATIONS: Final = "ParameterDeclarations"
 MOST_TOLD: Final = 12
 """Elements that one error names."""
 _PARAMETER: Final = re.compile(r"\$([A-Za-z_][A-Za-z0-9_]*)")
@@ -54,6 +56,38 @@ class Source:
     def error(self, element: Element, why: str) -> ProfileError:
         """Return the error that an element cannot be read."""
         return ProfileError(f"{self.origin}: line {element.line}: <{shown(element.name)}>: {why}")
+
+    def declare(self, element: Element, given: Mapping[str, str] | None = None) -> None:
+        """Take the parameters of a <ParameterDeclarations>; `given` values stand in the place of its own.
+
+        Raises:
+            ProfileError: one has no value, or comes twice.
+        """
+        own: set[str] = set()
+        for one in self.children(element, "ParameterDeclaration"):
+            name = self.text(one, "name")
+            if name in own:
+                raise self.error(one, f"name: value {name!a}: another name for each")
+            for constraint in one.children:
+                self.note(constraint, "not checked")
+            own.add(name)
+            self.parameters[name] = given[name] if given is not None and name in given else self.text(one, "value")
+
+    @contextmanager
+    def scope(self, element: Element) -> Iterator[None]:
+        """Within the block the parameters count that an element declares, before those of the same name around it.
+
+        Raises:
+            ProfileError: as `declare`.
+        """
+        around = dict(self.parameters)
+        for part in element.children:
+            if part.name == DECLARATIONS:
+                self.declare(part)
+        try:
+            yield
+        finally:
+            self.parameters = around
 
     def text(self, element: Element, attribute: str, default: str | None = None) -> str:
         """Return an attribute, a parameter in its place.

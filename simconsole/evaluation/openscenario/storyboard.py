@@ -4,8 +4,9 @@ from collections.abc import Iterator, Mapping
 from typing import Any, Final, NamedTuple
 
 from simconsole.evaluation.openscenario.actions import private_action, speed_target
-from simconsole.evaluation.openscenario.entities import Entity, Place, position
-from simconsole.evaluation.openscenario.reading import Source
+from simconsole.evaluation.openscenario.controllers import BOOLEANS, console_event, is_activation, switched
+from simconsole.evaluation.openscenario.entities import UNUSED, Entity, Place, position
+from simconsole.evaluation.openscenario.reading import DECLARATIONS, Source
 from simconsole.evaluation.openscenario.triggers import Names, conditions, only_time
 from simconsole.world.sumo.xml_guard import Element
 
@@ -19,13 +20,14 @@ class Beginning(NamedTuple):
 
     place: Place | None
     speed_mps: float
+    active: bool = True  # its controller
 
 
 class Told(NamedTuple):
     """A storyboard as plain values."""
 
     beginnings: dict[str, Beginning]  # by entity
-    acts: dict[str, list[dict[str, Any]]]  # likewise: of the actors
+    acts: dict[str, list[dict[str, Any]]]  # likewise; those of the console's vehicle are events of the scenario
     end_s: float | None
 
 
@@ -41,16 +43,17 @@ def storyboard(source: Source, element: Element, ego: str, known: Mapping[str, E
     end_s = None
     for child in source.children(element, "Init", "Story", "StopTrigger"):
         if child.name == "Init":
-            beginnings = _beginnings(source, child, known)
+            beginnings = _beginnings(source, child, ego, known)
         elif child.name == "StopTrigger":
             end_s = only_time(source, child, names) if child.children else None
         else:
-            for name, act in _story(source, child, names, ego, known, lane_m):
-                acts[name].append(act)
+            with source.scope(child):
+                for name, act in _story(source, child, names, ego, known, lane_m):
+                    acts[name].append(act)
     return Told(beginnings, acts, end_s)
 
 
-def _beginnings(source: Source, element: Element, known: Mapping[str, Entity]) -> dict[str, Beginning]:
+def _beginnings(source: Source, element: Element, ego: str, known: Mapping[str, Entity]) -> dict[str, Beginning]:
     found: dict[str, Beginning] = {}
     for child in source.children(source.only(element, "Actions"), "Private"):
         name = source.text(child, "entityRef")
@@ -59,6 +62,8 @@ def _beginnings(source: Source, element: Element, known: Mapping[str, Entity]) -
         before = found.get(name, Beginning(None, 0.0))
         for action in source.children(child, "PrivateAction"):
             before = _begins(source, source.one(action), before)
+            if name != ego and is_activation(action):
+                source.note(action, UNUSED)
         found[name] = before
     return found
 
@@ -75,9 +80,9 @@ def _begins(source: Source, element: Element, before: Beginning) -> Beginning:
             return before._replace(speed_mps=speed_target(source, targets[0]) or 0.0)
         source.refuse(action)
         return before
-    if element.name == "ControllerAction":
-        source.note(element, "nobody is controlled by it: the vehicle has its own driver, others their acts")
-        return before
+    if element.name in ("ControllerAction", "ActivateControllerAction"):
+        on = switched(source, element)
+        return before if on is None else before._replace(active=on)
     source.refuse(element)
     return before
 
@@ -85,7 +90,9 @@ def _begins(source: Source, element: Element, before: Beginning) -> Beginning:
 def _story(
     source: Source, element: Element, names: Names, ego: str, known: Mapping[str, Entity], lane_m: float
 ) -> Iterator[tuple[str, dict[str, Any]]]:
-    for act in source.children(element, "Act"):
+    for act in source.children(element, "Act", DECLARATIONS):
+        if act.name == DECLARATIONS:
+            continue
         groups, begins_s = [], 0.0
         for child in source.children(act, "ManeuverGroup", "StartTrigger", "StopTrigger"):
             if child.name == "ManeuverGroup":
@@ -96,8 +103,8 @@ def _story(
                 source.refuse(child, "not understood: an act that runs to its end")
         for group in groups:
             for name, event in _events(source, group, ego, known):
-                for found in _acts(source, event, known[name], names, lane_m):
-                    yield name, _later(found, begins_s)
+                for found in _acts(source, event, None if name == ego else known[name], names, lane_m, begins_s):
+                    yield name, found
 
 
 def _later(act: dict[str, Any], begins_s: float) -> dict[str, Any]:
@@ -115,26 +122,37 @@ def _events(source: Source, element: Element, ego: str, known: Mapping[str, Enti
         source.refuse(element, "not understood: maximumExecutionCount 1")
     for child in source.children(element, "Actors", "Maneuver"):
         if child.name == "Actors":
-            if source.choice(child, "selectTriggeringEntities", {"false": "", "0": "", "true": "t", "1": "t"}, "false"):
+            if source.choice(child, "selectTriggeringEntities", BOOLEANS, "false"):
                 source.refuse(child, "not understood: actors by name")
             for named in source.children(child, "EntityRef"):
                 name = source.text(named, "entityRef")
-                if name == ego:
+                if name == ego and not _only_switches(element):
                     source.refuse(named, "the console's vehicle is driven from its seat, or by a controller")
                 elif name not in known:
                     raise source.error(named, f"entityRef: value {name!a}: an entity of the file")
                 else:
                     actors.append(name)
             continue
-        events = list(source.children(child, "Event"))
-        for event in events:
-            if not source.choice(event, "priority", _PRIORITIES, "override") and len(events) > 1:
-                source.refuse(event, "not understood: priority override, of several events")
-                continue
-            yield from ((name, event) for name in actors)
+        events = [event for event in source.children(child, "Event", DECLARATIONS) if event.name == "Event"]
+        with source.scope(child):
+            for event in events:
+                if not source.choice(event, "priority", _PRIORITIES, "override") and len(events) > 1:
+                    source.refuse(event, "not understood: priority override, of several events")
+                    continue
+                yield from ((name, event) for name in actors)
 
 
-def _acts(source: Source, element: Element, entity: Entity, names: Names, lane_m: float) -> Iterator[dict[str, Any]]:
+def _only_switches(group: Element) -> bool:
+    """Return whether nothing happens in a group of maneuvers but that a controller is switched on or off."""
+    events = [event for maneuver in group.children for event in maneuver.children if event.name == "Event"]
+    actions = [action for event in events for action in event.children if action.name == "Action"]
+    return all(is_activation(one) for action in actions for one in action.children)
+
+
+def _acts(
+    source: Source, element: Element, entity: Entity | None, names: Names, lane_m: float, begins_s: float
+) -> Iterator[dict[str, Any]]:
+    """Yield what an event does: acts of an actor, or without an `entity` what happens to the console's vehicle."""
     if source.number(element, "maximumExecutionCount", 1.0, 1e6, _ONCE) != _ONCE:
         source.refuse(element, "not understood: maximumExecutionCount 1")
     trigger: dict[str, Any] | None = {"at_s": 0.0}
@@ -148,6 +166,10 @@ def _acts(source: Source, element: Element, entity: Entity, names: Names, lane_m
         if action.name != "PrivateAction":
             source.refuse(action)
             continue
-        found = private_action(source, action, entity, lane_m)
+        when = {} if trigger is None else _later(trigger, begins_s)
+        if entity is None:
+            found = console_event(source, action, when)
+        else:
+            found = private_action(source, action, entity, lane_m)
         if found is not None and trigger is not None:
-            yield {**trigger, **found}
+            yield found if entity is None else {**when, **found}

@@ -110,4 +110,4 @@ def _broken(place: Array, value: Array) -> tuple[Array, Array]:
 def _facts_table(sides: tuple[Side, Side], facts: tuple[Mapping[str, object], Mapping[str, object]]) -> str:
     names = dict.fromkeys((*facts[0], *facts[1]))
     rows = ((name, *(str(of.get(name, "-")) for of in facts)) for name in names)
-    return table(("", *(side.name for side in sides)), rows, words=3)
+    return table(("of the drive", *(side.name for side in sides)), rows, words=3)

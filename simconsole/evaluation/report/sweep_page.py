@@ -7,9 +7,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from simconsole.evaluation.manoeuvres.attempt import Line, Panel
 from simconsole.evaluation.metrics.table import Array
-from simconsole.evaluation.report.figures import panels_picture
 from simconsole.evaluation.report.frame import html_page
 from simconsole.evaluation.sweep.plan import Plan
 from simconsole.evaluation.sweep.results import metric_names
@@ -17,8 +15,8 @@ from simconsole.evaluation.sweep.task import GOOD, Task, TaskResult
 from simconsole.values.errors import RecordingError
 from simconsole.values.host.files import write_atomically
 
-PLOTS: Final = 12
-"""Metrics that are plotted, those that vary; the table has all of them."""
+CURVE: Final = 120, 28
+"""Width and height of a distribution in its row, in units of its drawing; it has no more steps than it is wide."""
 LOST: Final = 20
 """Drives that did not end well that are listed; of the others only the number is told."""
 
@@ -78,7 +76,7 @@ def write_sweep_page(path: Path, plan: Plan, results: Mapping[int, TaskResult], 
     if found:
         parts += [
             "<h2>Distributions</h2>",
-            panels_picture("sweep", "Distributions", tuple(map(_panel, found[:PLOTS]))),
+            '<p class="note">The curve: from least to most, the share of drives that have at most that value.</p>',
             _table(plan, found),
             "<h2>Least and most again</h2>",
             _commands(plan, found, again),
@@ -106,14 +104,22 @@ def _lost(plan: Plan, lost: Sequence[TaskResult], again: Callable[[int], str]) -
     return "\n".join((head, *rows, "</table>", *((f"<p>and {more} more</p>",) if more > 0 else ())))
 
 
-def _panel(one: Distribution) -> Panel:
-    """Return the share of drives that have at most a value."""
-    share = np.arange(1, len(one.values) + 1) / len(one.values)
-    return Panel(one.name, one.name.rpartition(".")[2], "share of drives", (Line("", np.sort(one.values), share),))
+def _curve(one: Distribution) -> str:
+    """Return the share of drives that have at most a value, over the values, as a drawing that fits in a row."""
+    (wide, high), count = CURVE, len(one.values)
+    steps = min(count, wide)
+    upto = np.array([-(-step * count // steps) for step in range(1, steps + 1)])  # so many of the drives each
+    x = (np.sort(one.values)[upto - 1] - one.values.min()) / np.ptp(one.values) * wide
+    y = high * (1.0 - upto / count)
+    way = "".join(f"H{along:.1f}V{up:.1f}" for along, up in zip(x, y, strict=True))
+    drawn = f'<path d="M0 {high}{way}" fill="none" stroke="#1a73e8" stroke-width="1.5"/>'
+    name = escape(f"distribution of {one.name}", quote=True)
+    return f'<svg role="img" aria-label="{name}" viewBox="-1 -1 {wide + 2} {high + 2}">{drawn}</svg>'
 
 
 def _table(plan: Plan, found: Sequence[Distribution]) -> str:
     heads = "".join(f"<th class=n>{name}</th>" for name in ("least", "drive", "median", "95 %", "most", "drive"))
+    heads += "<th>distribution</th>"
     rows = []
     for one in found:
         median, high = np.percentile(one.values, (50.0, 95.0))
@@ -121,7 +127,7 @@ def _table(plan: Plan, found: Sequence[Distribution]) -> str:
         rows.append(
             f"<tr><td>{escape(one.name)}</td><td class=n>{one.values.min():.4g}</td>{_which(least)}"
             f"<td class=n>{median:.4g}</td><td class=n>{high:.4g}</td><td class=n>{one.values.max():.4g}</td>"
-            f"{_which(most)}</tr>"
+            f"{_which(most)}<td>{_curve(one)}</td></tr>"
         )
     return "\n".join((f"<table><tr><th>metric</th>{heads}</tr>", *rows, "</table>"))
 

@@ -29,7 +29,7 @@ def facts_table(facts: Mapping[str, object]) -> str:
 
 def sides_table(rows: Sequence[MetricRow], heads: Sequence[str], sides: Sequence[Mapping[str, Any]]) -> str:
     """Return a line for each figure with its value on each side."""
-    lines = [f"<table><tr><th></th>{''.join(f'<th class=n>{escape(head)}</th>' for head in heads)}</tr>"]
+    lines = [f"<table><tr><th>figure</th>{''.join(f'<th class=n>{escape(head)}</th>' for head in heads)}</tr>"]
     for row in rows:
         cells = "".join(f"<td class=n>{row.written(side.get(row.key))}</td>" for side in sides)
         lines.append(f"<tr><th>{escape(row.label)}</th>{cells}</tr>")

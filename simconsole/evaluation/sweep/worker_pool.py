@@ -1,22 +1,19 @@
-"""A process that drives one task after the other: `python -m simconsole.evaluation.sweep.worker_pool`.
+"""Processes that drive one task after the other (`worker.py`), one for each thread that asks.
 
-What takes it down, an error in compiled code, the kernel for want of memory, a drive that never ends, loses the drive
-that it was at and nothing else. Tasks and results are lines of JSON on its standard input and output; it ends with
-whoever holds its input.
+What takes one down, an error in compiled code, the kernel for want of memory, a drive that never ends, loses the drive
+that it was at and nothing else.
 """
 
-import os
-import queue
 import threading
 from contextlib import suppress
-from typing import BinaryIO, Final, NoReturn
+from typing import Final
 
 import msgspec
 
-from simconsole.evaluation.sweep.task import Outcome, Task, TaskResult, drive_task, from_bytes, to_bytes
-from simconsole.processes.lifetimes import SIGNALS, close_pipe, end_at_once, handle, spawn
+from simconsole.evaluation.sweep.task import Outcome, Task, TaskResult, to_bytes
+from simconsole.processes.lifetimes import close_pipe, spawn
 
-_MODULE: Final = "simconsole.evaluation.sweep.worker_pool"
+_MODULE: Final = "simconsole.evaluation.sweep.worker"
 _ENDS_S: Final = 10.0
 
 
@@ -109,32 +106,3 @@ class WorkerPool:
         self._of_thread.worker = None
         with self._lock:
             self._all.discard(worker)
-
-
-def main() -> NoReturn:
-    """Drive what comes until standard input ends."""
-    answers = os.fdopen(os.dup(1), "wb", buffering=0)
-    os.dup2(2, 1)  # what a drive prints must not come between the answers
-    lines: queue.SimpleQueue[bytes] = queue.SimpleQueue()
-    threading.Thread(target=_listen, args=(lines,), name="parent", daemon=True).start()
-    handle(lambda number, frame: end_at_once(1), SIGNALS)
-    while True:
-        _answer(answers, drive_task(from_bytes(lines.get())))
-
-
-def _listen(lines: "queue.SimpleQueue[bytes]") -> None:
-    """Take tasks from standard input as they come, so that its end is seen in the middle of a drive."""
-    with open(0, "rb", closefd=False) as pipe:
-        for line in pipe:
-            lines.put(line)
-    end_at_once(0)
-
-
-def _answer(answers: BinaryIO, result: TaskResult) -> None:
-    line = msgspec.json.encode(result) + b"\n"
-    while line:
-        line = line[answers.write(line) :]
-
-
-if __name__ == "__main__":
-    main()

@@ -27,8 +27,11 @@ class FileEntry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
     """One file of a bundle. An export is made from the rest and may be missing."""
 
     size_bytes: int
+    """Size of the file."""
     sha256: str
+    """SHA-256 of the file's content, hexadecimal."""
     export: bool = False
+    """The file is made from the others and may be missing."""
 
 
 class Manifest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -38,16 +41,27 @@ class Manifest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
     """
 
     schema: int = SCHEMA
+    """Version of the manifest; 2 has a checksum of its own, 1 had none."""
     finished: bool = False
+    """The drive has ended, and all of its files are listed."""
     files: dict[str, FileEntry] = {}
-    versions: dict[str, str] = {}  # of the packages that make the result
+    """The bundle's files by name."""
+    versions: dict[str, str] = {}
+    """Versions of the packages that make the result."""
     provenance: Provenance = Provenance()
+    """Where the drive comes from: who drove when, on what, with which code."""
     ticks: int = 0
-    digest: str = ""  # chained hash after the last tick, hexadecimal
+    """How many ticks were driven."""
+    digest: str = ""
+    """Chained hash after the last tick, hexadecimal."""
     recording_failure: str | None = None
-    platforms: dict[str, str] = {}  # bundles of the session's other platforms, folder and hash as of `digest`
-    packed_log: FileEntry | None = None  # the drive.log that drive.parquet stands for, and gives back
-    summary: dict[str, Any] = {}  # figures of the session: lateness percentiles, counters
+    """Why the recording broke off; `null` if it did not."""
+    platforms: dict[str, str] = {}
+    """Bundles of the session's other platforms: folder, and hash as of `digest`."""
+    packed_log: FileEntry | None = None
+    """The drive.log that drive.parquet stands for, and gives back; `null` if the log itself is there."""
+    summary: dict[str, Any] = {}
+    """Figures of the session: percentiles of lateness, counters."""
 
     @property
     def vouches_for_itself(self) -> bool:

@@ -19,51 +19,76 @@ NOTES_MAX: Final = 20
 class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The computer. Its name is left out: it often is a person's."""
 
-    platform: str  # operating system and architecture
+    platform: str
+    """Operating system and architecture."""
     kernel: str
+    """Version of the operating system's kernel."""
     cpu: str
+    """What the processor calls itself."""
     cpus: int
+    """How many processors the system has."""
     python: str
+    """Version of Python."""
 
 
 class Source(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The simconsole that drove."""
 
     version: str
-    sha256: str  # of every module's path and text
-    commit: str | None = None  # None: the modules lie in no git checkout
-    changed: bool | None = None  # whether they differ from the commit
+    """Version of the simconsole that drove."""
+    sha256: str
+    """SHA-256 of every module's path and text."""
+    commit: str | None = None
+    """Commit of the git checkout that the modules lie in; `null` if they lie in none."""
+    changed: bool | None = None
+    """Whether the modules differ from that commit."""
 
 
 class Device(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """One device of the cockpit, as it was found when it was opened."""
 
     roles: tuple[str, ...]
+    """What the device was in the cockpit."""
     name: str
-    usb_id: str  # vendor:product, hexadecimal
-    port: str = ""  # where it is plugged in; empty where the system does not tell
+    """What the device's firmware calls itself."""
+    usb_id: str
+    """USB vendor and product number, `VENDOR:PRODUCT`, hexadecimal."""
+    port: str = ""
+    """Where the device was plugged in; empty where the system does not tell."""
     serial: str = ""
+    """Serial number of the device; empty where it has none."""
 
 
 class TorqueShare(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """How much of the car's torque the wheel bears without swinging, by its profile, at one speed."""
 
     speed_kmh: float
-    share: float  # 0 to 1
+    """The speed for which the share holds."""
+    share: float
+    """Share of the car's torque that the wheel bears without swinging, 0 to 1."""
 
 
 class Provenance(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """All of it. What nobody told is empty."""
 
-    started_utc: str = ""  # ISO 8601, from the machine's clock
+    started_utc: str = ""
+    """When the drive began, ISO 8601, by the machine's clock."""
     title: str = ""
+    """Title of the session."""
     participant: str = ""
+    """Who drove, as it was told with `--participant`."""
     trial: str = ""
+    """Which trial it was, as it was told with `--trial`."""
     notes: tuple[str, ...] = ()
+    """What whoever started the drive noted."""
     machine: Machine | None = None
+    """The computer that drove."""
     source: Source | None = None
+    """The simconsole that drove."""
     devices: tuple[Device, ...] = ()
-    torque_shares: tuple[TorqueShare, ...] = ()  # by speed; none where the cockpit has no motor
+    """Devices of the cockpit, as they were found when they were opened."""
+    torque_shares: tuple[TorqueShare, ...] = ()
+    """How much of the car's torque the wheel bears, by speed; none where the cockpit has no motor."""
 
 
 UNKNOWN: Final = Provenance()

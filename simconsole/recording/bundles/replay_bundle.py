@@ -1,8 +1,9 @@
 """Replay of a bundle: build the console that the bundle describes and make every tick again."""
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from typing import Final
 
 import msgspec
 import numpy as np
@@ -11,6 +12,7 @@ from simconsole.profiles.files.world_files import located, with_kind
 from simconsole.profiles.strict_yaml import parse
 from simconsole.profiles.validation import convert
 from simconsole.recording.bundles.bundle import SESSION_FILE, Bundle, open_bundle, session_problem
+from simconsole.recording.framing import Record
 from simconsole.recording.replay import Remade, ReplayResult, replay
 from simconsole.tick.advance import Console, ConsoleState, advance_vector, decide
 from simconsole.tick.assembly import ResolvedSession, assemble
@@ -22,6 +24,8 @@ from simconsole.values.state_vector import TickInputs, input_vector
 from simconsole.values.version import __version__
 from simconsole.world.obstacles.striking import strike
 from simconsole.world.rules.situation import look_around
+
+_TICKS_BETWEEN_WORDS: Final = 500
 
 
 def recorded_session(bundle: Bundle) -> ResolvedSession:
@@ -72,10 +76,15 @@ def state_at(folder: Path, tick: int) -> tuple[Console, ConsoleState]:
     raise RecordingError(f"{folder}: tick: value {tick}: 0 to {last}, and recorded")
 
 
-def replay_bundle(folder: Path, tolerances: Mapping[str, float] | None = None) -> ReplayResult:
+def replay_bundle(
+    folder: Path,
+    tolerances: Mapping[str, float] | None = None,
+    told: Callable[[int, int], None] = lambda done, of: None,
+) -> ReplayResult:
     """Make every tick of the bundle in `folder` again from its recorded inputs, and compare the fields of both.
 
-    `tolerances` are absolute differences that are allowed, by column or pattern, as of `allowed_differences`.
+    `tolerances` are absolute differences that are allowed, by column or pattern, as of `allowed_differences`; `told` is
+    told now and then how many ticks of how many (0: unknown) are made.
 
     Raises:
         RecordingError: not a bundle, truncated, with a gap, or a tolerance for no field.
@@ -83,7 +92,7 @@ def replay_bundle(folder: Path, tolerances: Mapping[str, float] | None = None) -
     bundle = open_bundle(folder)
     console, state = assemble(recorded_session(bundle), compiled)
     found = replay(
-        bundle.log,
+        _counted(bundle, told),
         bundle.log.header,
         Remade(
             columns=console.columns,
@@ -99,6 +108,14 @@ def replay_bundle(folder: Path, tolerances: Mapping[str, float] | None = None) -
     remarks = bundle.remarks() + _other_sources(bundle, console)
     broken = [f"{bundle.log.path}: {problem}" for problem in found.problems]
     return found._replace(problems=(*broken, *bundle.problems()), remarks=tuple(remarks))
+
+
+def _counted(bundle: Bundle, told: Callable[[int, int], None]) -> Iterator[Record]:
+    total = bundle.manifest.ticks if bundle.manifest.finished else 0
+    for done, record in enumerate(bundle.log):
+        if done % _TICKS_BETWEEN_WORDS == 0:
+            told(done, total)
+        yield record
 
 
 def _other_sources(bundle: Bundle, console: Console) -> list[str]:

@@ -30,11 +30,17 @@ class Signature(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
     """signature.json, to which sealing.py adds its own checksum."""
 
     schema: Literal[1] = 1
+    """Version of the signature's file; always 1."""
     algorithm: Literal["Ed25519"] = "Ed25519"
-    public_key: str  # its 32 bytes, base64
-    signature: str  # its 64 bytes, base64
+    """How the signature is made."""
+    public_key: str
+    """The public key, its 32 bytes in base64."""
+    signature: str
+    """The signature, its 64 bytes in base64."""
     signer: str = ""
+    """Who signed, as they called themselves."""
     signed_utc: str
+    """When it was signed, ISO 8601, by the machine's clock."""
 
 
 def make_key(path: Path) -> str:

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from msgspec import Struct
 
-from simconsole.profiles.vehicle import TurtlebotProfile
+from simconsole.profiles.parts.turtlebot import TurtlebotProfile
 from simconsole.profiles.view import SceneProfile
 from simconsole.profiles.world import WorldProfile
 from simconsole.scene.entities import Dimensions

@@ -15,7 +15,7 @@ from simconsole.profiles.world import WorldProfile
 from simconsole.recording.log_header import ADVICE
 from simconsole.values.errors import BridgeError, OtherDriveError
 from simconsole.values.units import NS_PER_S, tick_time_ns
-from simconsole.world.rules.speed_advice import NO_ADVICE, Advice, Advised
+from simconsole.world.rules.speed_advice import NO_ADVICE, Advice, from_bytes, to_bytes
 
 if TYPE_CHECKING:
     from simconsole.drivers.autopilot.route_advice import RouteAdvice
@@ -97,24 +97,6 @@ class AdviceWorker(Worker, frozen=True, kw_only=True):
                     slot.write(stamp.sec * NS_PER_S + stamp.nanosec, to_bytes(told))
 
 
-def to_bytes(advice: Advice) -> bytes:
-    """Return an advice as JSON."""
-    return msgspec.json.encode(advice._asdict())
-
-
-def from_bytes(content: bytes) -> Advice:
-    """Return an advice from JSON.
-
-    Raises:
-        ValueError: it is none.
-    """
-    try:
-        told = msgspec.json.decode(content, type=dict[str, float])
-        return Advice(Advised(int(told.pop("kind"))), **told)
-    except (msgspec.MsgspecError, KeyError, TypeError) as problem:
-        raise ValueError(f"advice: {problem}") from None
-
-
 _NOTHING: Final = to_bytes(NO_ADVICE)
 
 
@@ -157,9 +139,37 @@ class AdviceSource:
         return [(ADVICE, content)]
 
 
+class ToldAdvice:
+    """What a controller in lockstep says that it goes by, for the log: each advice when it is another."""
+
+    def __init__(self) -> None:
+        self._newest = self._told = _NOTHING
+
+    def take(self, text: str) -> None:
+        """Take an advice as JSON.
+
+        Raises:
+            ValueError: it is none.
+        """
+        self._newest = to_bytes(from_bytes(text.encode()))
+
+    def take_messages(self, tick: int) -> list[tuple[str, bytes]]:
+        """Return what holds at a tick, if it is not what held before."""
+        if self._newest == self._told:
+            return []
+        self._told = self._newest
+        return [(ADVICE, self._told)]
+
+
 def gives_advice(session: SessionProfile) -> bool:
     """Return whether a drive advises its driver how to come to lights at green."""
     return session.mode.pacing == "realtime" and session.features.speed_advice
+
+
+def hears_advice(session: SessionProfile) -> bool:
+    """Return whether the log keeps what a controller in lockstep goes by: of one platform."""
+    lockstep = session.mode.pacing == "lockstep" and session.outputs.bridge is not None
+    return lockstep and session.features.speed_advice and not session.scenario.platforms
 
 
 def share_advice(session: SessionProfile, folder: Path, tick_hz: int) -> AdviceSource | None:

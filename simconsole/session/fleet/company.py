@@ -5,16 +5,12 @@ from typing import Final
 
 import numpy as np
 
-from simconsole.session.traffic_source import TrafficSource, ego_box
+from simconsole.session.traffic_source import ego_box
 from simconsole.tick.advance import Console, ConsoleState
-from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.layout import read
-from simconsole.values.state_vector import LAYOUT, Snapshot
-from simconsole.world.kinds.worlds import open_world
+from simconsole.values.state_vector import LAYOUT
 from simconsole.world.roads.road_map import Array
-from simconsole.world.roads.road_world import roads_of
-from simconsole.world.rules.owing import Owing
-from simconsole.world.traffic.crashes import box_moving, motion_of
+from simconsole.world.traffic.crashes import box_moving, guessed, motion_of
 from simconsole.world.traffic.impact import Moving
 from simconsole.world.traffic.road_users import FIELDS, Box, RoadUser, RoadUserKind
 
@@ -32,14 +28,17 @@ class Company:
         self._platforms = [console.platform for console in consoles]
         self._table = np.zeros((len(consoles), FIELDS))
         self._vehicles = [read(state.vector, LAYOUT.vehicle) for state in states]
+        self._boxes: list[Box] = []
         self.renew(states)
 
     def renew(self, states: Sequence[ConsoleState]) -> None:
         """Tell from now on where the platforms are in these states."""
+        self._boxes.clear()
         for number, (state, platform) in enumerate(zip(states, self._platforms, strict=True)):
             vehicle = read(state.vector, LAYOUT.vehicle)
             self._vehicles[number] = vehicle
             box = ego_box(vehicle, platform)
+            self._boxes.append(box)
             self._table[number] = RoadUser(
                 id=float(number),
                 kind=float(RoadUserKind.CAR),
@@ -58,12 +57,22 @@ class Company:
         """Return the road users of the platform of this number: all others."""
         return Beside(self, [other for other in range(len(self._platforms)) if other != number])
 
+    def boxes(self) -> list[Box]:
+        """Return the footprints of all platforms, in their order."""
+        return list(self._boxes)
+
+    def has(self, number: float) -> bool:
+        """Return whether a road user is a platform."""
+        return number < len(self._platforms)
+
     def rows(self, numbers: Sequence[int]) -> Array:
         """Return where these platforms are, float64 [platforms, FIELDS], a copy."""
         return self._table[numbers]
 
     def moving(self, user: RoadUser) -> Moving:
-        """Return how a platform moves as a body."""
+        """Return how a road user of a platform's moves as a body."""
+        if not self.has(user.id):
+            return guessed(user)
         solid, vehicle = self._platforms[int(user.id)].solid, self._vehicles[int(user.id)]
         return box_moving(user, LIGHT_KG) if solid is None else motion_of(vehicle, solid)
 
@@ -83,37 +92,9 @@ class Beside:
         """Return where they are now."""
         return self.road_users()
 
+    def is_platform(self, number: float) -> bool:
+        """Return whether a road user is one of ours."""
+        return self._company.has(number)
+
     def push(self, number: float, change_mps: float) -> None:
         """Do nothing: who is pushed finds the same touch among its own road users."""
-
-
-class Sight(TrafficSource):
-    """What one platform sees of the others: taken once all have made the ticks of a period, of the same moment."""
-
-    def publish(self, snapshot: Snapshot) -> None:
-        """Do nothing yet: others have still to make the ticks of this period."""
-
-    def look(self, snapshot: Snapshot) -> None:
-        """Look at the others, at the end of a period."""
-        super().publish(snapshot)
-
-
-def sight_of(company: Company, number: int, resolved: ResolvedSession, console: Console) -> Sight:
-    """Return what the platform of this number sees of the others; its period is that of the session's control.
-
-    Raises:
-        ProfileError: a file of its map cannot be read.
-    """
-    world = None if resolved.world is None else open_world(resolved.world)
-    route, roads = (None, None) if world is None else (world.route, roads_of(world))
-    owing = None
-    if roads is not None and route is not None:
-        owing = Owing(roads.road_map, roads.legs, route, console.tick_hz)
-    return Sight(
-        company.around(number),
-        console.platform,
-        resolved.session.mode.control_period_ticks,
-        route,
-        owing,
-        moves=company.moving,
-    )

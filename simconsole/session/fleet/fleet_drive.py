@@ -9,13 +9,15 @@ from typing import Any, NamedTuple
 
 from simconsole.processes.lifetimes import Interrupt, remove_half_made, undone
 from simconsole.processes.shared_memory import sweep
-from simconsole.profiles.vehicle import TurtlebotProfile
+from simconsole.profiles.parts.turtlebot import TurtlebotProfile
 from simconsole.recording.bundles.bundle import BundleWriter
 from simconsole.recording.bundles.manifest import Manifest
 from simconsole.recording.bundles.provenance import NOTHING_GIVEN, Given
-from simconsole.session.fleet.company import Company, Sight, sight_of
+from simconsole.session.fleet.company import Company
 from simconsole.session.fleet.fleet_bridge import links
 from simconsole.session.fleet.members import members
+from simconsole.session.fleet.shared_sumo import SharedSumo, shared_sumo
+from simconsole.session.fleet.sight import Sight, sight_of
 from simconsole.session.headless import open_headless
 from simconsole.session.lifecycle import ENDLESS_TICKS, DriveResult, bundle_of, list_what_workers_wrote, warm_up
 from simconsole.session.lockstep import LockstepLink
@@ -67,14 +69,14 @@ def drive_fleet(
     assembled = [assemble(part, compiled) for part in parts]
     for console, state in assembled:
         warm_up(console, state)
-    company = Company(*zip(*assembled, strict=True))
-    sights = [
-        None if isinstance(part.vehicle, TurtlebotProfile) else sight_of(company, number, part, console)
-        for number, (part, (console, _)) in enumerate(zip(parts, assembled, strict=True))
-    ]
+    company, consoles = Company(*zip(*assembled, strict=True)), [console for console, _ in assembled]
     with ExitStack() as stack:
         interrupt = stack.enter_context(Interrupt())
-        consoles = [console for console, _ in assembled]
+        sumo = shared_sumo(parts, consoles, company, stack)
+        sights = [
+            None if isinstance(part.vehicle, TurtlebotProfile) else sight_of(company, number, part, console, sumo)
+            for number, (part, console) in enumerate(zip(parts, consoles, strict=True))
+        ]
         bundles = _bundles(named, consoles, sights, folder, given, stack)
         opened = _open(parts, consoles, sights, bundles, interrupt, stack, on_bridge)
         fleet = [
@@ -82,7 +84,7 @@ def drive_fleet(
             for part, built, bundle, sight, each in zip(parts, assembled, bundles, sights, opened, strict=True)
         ]
         began_s = time.monotonic()
-        states = _run(fleet, company, interrupt, show, until_left)
+        states = _run(fleet, company, sumo, interrupt, show, until_left)
         if interrupt.raised:
             states = [
                 come_to_rest(member.console, state, member.opened.components.recorder)
@@ -142,6 +144,7 @@ def _open(
 def _run(
     fleet: Sequence[_Member],
     company: Company,
+    sumo: SharedSumo | None,
     interrupt: Interrupt,
     show: Callable[[Snapshot], None],
     until_left: bool,
@@ -165,6 +168,8 @@ def _run(
         if has_robots:
             whereabouts.renew(states)
         company.renew(states)
+        if sumo is not None:
+            sumo.step(states[0].tick)
         for member, state in zip(fleet, states, strict=True):
             if member.sight is not None:
                 member.sight.look(Snapshot(state.tick, tick_hz, state.vector))

@@ -1,13 +1,15 @@
 """A session with several platforms, taken apart: one session of one platform for each."""
 
 import math
+from collections.abc import Sequence
 from typing import Final
 
 import msgspec
 
 from simconsole.profiles.bridge import BridgeProfile
+from simconsole.profiles.parts.turtlebot import TurtlebotProfile
 from simconsole.profiles.session import Devices, PlatformSection, SessionProfile, Start
-from simconsole.profiles.vehicle import TurtlebotProfile, VehicleProfile
+from simconsole.profiles.vehicle import VehicleProfile
 from simconsole.profiles.world import ArenaProfile, WorldProfile
 from simconsole.session.resolution import with_start
 from simconsole.tick.assembly import ResolvedSession
@@ -30,6 +32,7 @@ def members(resolved: ResolvedSession) -> dict[str, ResolvedSession]:
     """
     session = resolved.session
     _check(session)
+    _check_traffic(session, resolved.fleet)
     seat = session.scenario.seat or session.scenario.platforms[0].name
     taken = {}
     for number, (platform, vehicle) in enumerate(zip(session.scenario.platforms, resolved.fleet, strict=True)):
@@ -115,7 +118,6 @@ def _check(session: SessionProfile) -> None:
         "mode.pacing: lockstep, or free with --headless": session.mode.pacing != "realtime",
         "mode.start: at_once": session.mode.start == "at_once",
         "outputs.can: none": session.outputs.can is None,
-        "environment.traffic: none": session.environment.traffic is None,
     }
     wrong = [wanted for wanted, is_so in alone.items() if not is_so]
     if wrong:
@@ -124,3 +126,25 @@ def _check(session: SessionProfile) -> None:
         raise ProfileError("scenario.platforms: several platforms in lockstep need outputs.bridge")
     if bridge is not None and (bridge.upstream is not None or bridge.ros2 is not None or bridge.external_view):
         raise ProfileError("scenario.platforms: outputs.bridge: without upstream, ros2 and external_view, for several")
+
+
+def _check_traffic(session: SessionProfile, fleet: Sequence[VehicleProfile]) -> None:
+    """Refuse traffic that several platforms cannot be in: built-in one, and any beside robots.
+
+    Raises:
+        ProfileError: names it.
+    """
+    traffic = session.environment.traffic
+    if traffic is None:
+        return
+    if traffic.sumo is None:
+        raise ProfileError("environment.traffic: value given: none, or sumo, with scenario.platforms")
+    robot = next(
+        (one.name for one, vehicle in zip(session.scenario.platforms, fleet, strict=True) if _is_robot(vehicle)), None
+    )
+    if robot is not None:
+        raise ProfileError(f"scenario.platforms: {robot}: vehicle: no robot, where there is environment.traffic")
+
+
+def _is_robot(vehicle: VehicleProfile) -> bool:
+    return isinstance(vehicle, TurtlebotProfile)

@@ -74,7 +74,7 @@ class SumoWorker(Worker, frozen=True, kw_only=True):
             net=read_map(self.world.map),
             legs=roads.legs,
             tick_hz=self.tick_hz,
-            ego=Box(*self.ego),
+            egos=(Box(*self.ego),),
             duration_s=self.duration_s,
             ground=world.ground,
         )

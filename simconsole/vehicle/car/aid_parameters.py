@@ -2,7 +2,8 @@
 
 from typing import Final
 
-from simconsole.profiles.vehicle import AxleProfile, CarProfile
+from simconsole.profiles.parts.chassis import AxleProfile
+from simconsole.profiles.vehicle import CarProfile
 from simconsole.values.units import MPS_PER_KMH, RAD_PER_DEG, STANDARD_GRAVITY_MPS2
 from simconsole.vehicle.car.parameters import AidParameters, AxleParameters
 

@@ -5,13 +5,9 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from simconsole.profiles.vehicle import (
-    AutomaticProfile,
-    AxleProfile,
-    CarProfile,
-    EngineProfile,
-    GearboxProfile,
-)
+from simconsole.profiles.parts.chassis import AxleProfile
+from simconsole.profiles.parts.drivetrain import AutomaticProfile, EngineProfile, GearboxProfile
+from simconsole.profiles.vehicle import CarProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.ground import GROUND, Ground, ground_row
 from simconsole.values.layout import Part, read, write

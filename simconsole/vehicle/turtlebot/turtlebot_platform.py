@@ -4,7 +4,7 @@ from typing import Final
 
 import numpy as np
 
-from simconsole.profiles.vehicle import TurtlebotProfile
+from simconsole.profiles.parts.turtlebot import TurtlebotProfile
 from simconsole.values.draws import Channel, even
 from simconsole.values.ground import Ground, ground_row
 from simconsole.values.platform import Obstacles, Platform, Pose

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simconsole.profiles.vehicle import LidarProfile
+from simconsole.profiles.parts.turtlebot import LidarProfile
 from simconsole.values.draws import Channel, normals
 from simconsole.values.kernels import Row
 from simconsole.values.units import NS_PER_S

@@ -21,10 +21,11 @@ class Outlines(NamedTuple):
     circles: Array  # [M, 3]: x, y, radius
 
 
-def outlines_of(profile: ArenaProfile) -> Outlines:
-    """Return the obstacles of an arena."""
-    sides = [(a.x_m, a.y_m, b.x_m, b.y_m) for wall in profile.walls for a, b in wall.sides]
-    circles = [(one.x_m, one.y_m, one.radius_m) for one in profile.pillars]
+def outlines_of(profile: ArenaProfile, least_m: float = 0.0) -> Outlines:
+    """Return the obstacles of an arena that are at least so high."""
+    walls = [wall for wall in profile.walls if wall.height_m >= least_m]
+    sides = [(a.x_m, a.y_m, b.x_m, b.y_m) for wall in walls for a, b in wall.sides]
+    circles = [(one.x_m, one.y_m, one.radius_m) for one in profile.pillars if one.height_m >= least_m]
     return Outlines(
         segments=np.array(sides, dtype=np.float64).reshape(-1, 4),
         circles=np.array(circles, dtype=np.float64).reshape(-1, 3),

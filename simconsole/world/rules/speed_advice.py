@@ -10,6 +10,8 @@ from collections.abc import Callable, Sequence
 from enum import IntEnum
 from typing import Final, NamedTuple
 
+import msgspec
+
 REACH_M: Final = 300.0
 """A line further away asks for nothing yet: signals are not heard there."""
 LEAST_MPS: Final = 5.0
@@ -52,6 +54,24 @@ class Advice(NamedTuple):
 
 NO_ADVICE: Final = Advice()
 STOP: Final = Advice(Advised.STOP)
+
+
+def to_bytes(advice: Advice) -> bytes:
+    """Return an advice as JSON."""
+    return msgspec.json.encode(advice._asdict())
+
+
+def from_bytes(content: bytes) -> Advice:
+    """Return an advice from JSON.
+
+    Raises:
+        ValueError: it is none.
+    """
+    try:
+        told = msgspec.json.decode(content, type=dict[str, float])
+        return Advice(Advised(int(told.pop("kind"))), **told)
+    except (msgspec.MsgspecError, KeyError, TypeError) as problem:
+        raise ValueError(f"advice: {problem}") from None
 
 
 class Greens(NamedTuple):

@@ -45,7 +45,9 @@ Found = Mapping[str, Mapping[int, Any]]
 class Numbers:
     """Numbers for SUMO's names: nobody gets that of another."""
 
-    def __init__(self) -> None:
+    def __init__(self, first: int = 0) -> None:
+        """Begin with `first`: smaller ones are taken."""
+        self._first = first
         self._numbers: dict[tuple[bool, str], float] = {}
         self._names: dict[float, tuple[bool, str]] = {}
 
@@ -54,7 +56,7 @@ class Numbers:
         key = (walks, name)
         number = self._numbers.get(key)
         if number is None:
-            number = self._numbers[key] = float(len(self._numbers))
+            number = self._numbers[key] = float(self._first + len(self._numbers))
             self._names[number] = key
         return number
 
@@ -69,17 +71,35 @@ def position_of(found: Mapping[int, Any]) -> tuple[float, float]:
     return float(x), float(y)
 
 
-def road_users(vehicles: Found, people: Found, numbers: Numbers, moved_m: Moved, ego: tuple[float, float]) -> Array:
-    """Return a table of road users, float64 [users, FIELDS]; of too many those nearest to `ego`, in SUMO's metres."""
+def motion_of(found: Mapping[int, Any]) -> tuple[float, float, float, float]:
+    """Return where SUMO has a vehicle (m), the way that it heads (degrees, navigational) and its speed (m/s)."""
+    x, y, _ = found[_POSITION3D]
+    return x, y, found[_ANGLE], found[_SPEED]
+
+
+def moved_to(found: Mapping[int, Any], x_m: float, y_m: float, angle_deg: float) -> Mapping[int, Any]:
+    """Return a vehicle at another place in SUMO, as high as it is."""
+    return {**found, _POSITION3D: (x_m, y_m, found[_POSITION3D][2]), _ANGLE: angle_deg}
+
+
+def road_users(
+    vehicles: Found,
+    people: Found,
+    numbers: Numbers,
+    moved_m: Moved,
+    ego: tuple[float, float],
+    room: int = CAPACITY,
+) -> Array:
+    """Return a table of road users, float64 [users, FIELDS]; of more than `room` those nearest to `ego` (SUMO's m)."""
     rows = [_vehicle(numbers.of(False, name), vehicles[name]) for name in sorted(vehicles)]
     on_foot = [name for name in sorted(people) if _POSITION3D in people[name]]  # others have not set out yet
     rows += [_person(numbers.of(True, name), people[name]) for name in on_foot]
     if not rows:
         return np.zeros((0, FIELDS))
     table = np.array(rows)
-    if len(table) > CAPACITY:
+    if len(table) > room:
         away = np.hypot(table[:, 2] - ego[0], table[:, 3] - ego[1])
-        table = table[np.sort(np.argsort(away, kind="stable")[:CAPACITY])]
+        table = table[np.sort(np.argsort(away, kind="stable")[:room])]
     walks = table[:, 1] == RoadUserKind.PEDESTRIAN
     lengths = np.where(walks, 0.0, table[:, 6])  # who walks is where SUMO says, in the middle
     table[:, 2:5] = middles_of(table[:, 2:5], lengths, moved_m)

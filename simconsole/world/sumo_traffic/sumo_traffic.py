@@ -1,11 +1,11 @@
-"""SUMO's traffic round the console's vehicle, in the place of built-in traffic: the same step, the same table."""
+"""SUMO's traffic round the console's vehicles, in the place of built-in traffic: the same step, the same table."""
 
 import math
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Sequence
 from contextlib import ExitStack, suppress
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 from simconsole.profiles.traffic import SumoProfile, TrafficProfile
 from simconsole.values.errors import ProfileError
@@ -14,10 +14,12 @@ from simconsole.world.roads.lane_graph import Leg
 from simconsole.world.roads.road_map import Array, RoadMap
 from simconsole.world.rules.running_signals import RunningSignals
 from simconsole.world.sumo_traffic.demand import demand
-from simconsole.world.sumo_traffic.ego import EGO, NO_CHECKS, Ego
+from simconsole.world.sumo_traffic.ego import NO_CHECKS, Ego, is_ours
 from simconsole.world.sumo_traffic.engines import KEY, open_engine, said_by
+from simconsole.world.sumo_traffic.places import Bumper
+from simconsole.world.sumo_traffic.smooth import Smooth
 from simconsole.world.sumo_traffic.subscriptions import Found, Numbers, SignalReader, position_of, road_users
-from simconsole.world.traffic.road_users import NOBODY, Box
+from simconsole.world.traffic.road_users import CAPACITY, NOBODY, Box
 
 STOPPING_MPS2: Final = 6.0
 _HORIZON_S: Final = 3600.0
@@ -31,16 +33,20 @@ class Surroundings(NamedTuple):
     net: bytes  # the file that the map was read from
     legs: tuple[Leg, ...]  # of the world's route
     tick_hz: int
-    ego: Box  # at the start
+    egos: tuple[Box, ...]  # at the start; more than one: those of several platforms
     duration_s: float | None
     ground: HeightField | None = None
 
 
 class SumoTraffic:
-    """All road users but the ego, as SUMO moves them. Equal profiles and egos give equal bits, of one SUMO version."""
+    """All road users but the egos, as SUMO moves them. Equal profiles and egos give equal bits, of one SUMO version.
+
+    Of several egos each has others around it; to SUMO's vehicles all of them are there, to each other they are not.
+    Numbers of road users begin with how many egos there are, where there are several: those are their own.
+    """
 
     def __init__(self, profile: TrafficProfile, around: Surroundings) -> None:
-        """Start SUMO, let it warm up and put the vehicle on the road.
+        """Start SUMO, let it warm up and put the vehicles on the road.
 
         Raises:
             ProfileError: SUMO is missing, refuses what it shall do, or its network is not the world's map.
@@ -52,7 +58,9 @@ class SumoTraffic:
         self.road_map = around.road_map
         self.lost: str | None = None
         self.ego_error_m = 0.0
-        self._numbers, self._users = Numbers(), NOBODY
+        several = len(around.egos) > 1
+        self._numbers, self._users = Numbers(len(around.egos) if several else 0), [NOBODY] * len(around.egos)
+        self._smooth = Smooth(self._numbers, self.period_s)
         self._crashed: dict[str, float] = {}
         with ExitStack() as stack:
             folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="simconsole-sumo-")))
@@ -60,26 +68,30 @@ class SumoTraffic:
             stack.callback(engine.close)
             self._sumo, self._errors, self.process = engine.sumo, engine.errors, engine.process
             try:
-                self._begin(around.ego)
+                self._begin(around.egos)
             except self._errors as error:
                 reason = said_by(engine.process) or ascii(str(error))[1:-1][:200]
                 raise ProfileError(f"{KEY}: SUMO: {reason}: a simulation that starts") from None
             engine.expect_answers()
             self._stack = stack.pop_all()
 
-    def road_users(self) -> Array:
-        """Return where everybody is, float64 [users, FIELDS] as `RoadUser`."""
-        return self._users
+    def road_users(self, number: int = 0) -> Array:
+        """Return where those round the ego of this number are, float64 [users, FIELDS] as `RoadUser`."""
+        return self._users[number]
 
     def step(self, ego: Box | None) -> Array:
-        """Put the ego where it is, let SUMO step, and return who is where then; nobody once SUMO has failed."""
+        """Put the one ego where it is, let SUMO step, and return who is where then; nobody once SUMO has failed."""
+        self.step_all(self._around.egos if ego is None else (ego,))
+        return self._users[0]
+
+    def step_all(self, egos: Sequence[Box]) -> None:
+        """Put all egos where they are, and let SUMO step."""
         if self.lost is None:
             try:
-                self._step(self._around.ego if ego is None else ego)
+                self._step(egos)
             except self._errors as error:
                 self.lost = ascii(str(error) or type(error).__name__)[1:-1][:200]
-                self._users = NOBODY
-        return self._users
+                self._users = [NOBODY] * len(egos)
 
     def stand(self, periods: int) -> None:
         """Let so many periods of the drive go by in which SUMO's time stands still."""
@@ -100,45 +112,56 @@ class SumoTraffic:
             self._crashed[name] = max(0.0, speed_mps)
 
     def close(self) -> None:
-        """Take the ego off the road, and end SUMO or this client's part in it."""
+        """Take the egos off the road, and end SUMO or this client's part in it."""
         if self.lost is None:
             with suppress(*self._errors):
-                self._ego.leave()
+                for ego in self._egos:
+                    ego.leave()
         elif self.process is not None:
             self.process.kill()  # it answers no more
         self._stack.close()
 
-    def _begin(self, ego: Box) -> None:
-        sumo = self._sumo
-        if {edge.id for edge in self._around.road_map.edges} - set(sumo.edge.getIDList()):
+    def _begin(self, boxes: Sequence[Box]) -> None:
+        sumo, around = self._sumo, self._around
+        if {edge.id for edge in around.road_map.edges} - set(sumo.edge.getIDList()):
             raise ProfileError(f"{KEY}.config: value {self._profile.config}: one on the world's own map")
         step_s = sumo.simulation.getDeltaT()
         if abs(step_s - self.period_s) > 1e-9:
             raise ProfileError(f"{KEY}.address: value with steps of {step_s:g} s: {self.period_s:g} s")
         for _ in range(round(self._profile.warm_up_s / self.period_s)):
             sumo.simulationStep()
-        self._reader = SignalReader(sumo, [one.id for one in self._around.road_map.signals], self._around.tick_hz)
-        self._ego = Ego(sumo, self._around.road_map, self._around.legs, self._profile.radius_m)
-        self._ego.begin(ego)
+        self._reader = SignalReader(sumo, [one.id for one in around.road_map.signals], around.tick_hz)
+        radius_m = self._profile.radius_m
+        self._egos = [Ego(sumo, around.road_map, around.legs, radius_m, number) for number in range(len(boxes))]
+        for ego, box in zip(self._egos, boxes, strict=True):
+            ego.begin(box)
         # The step before the drive: what is there at tick 0.
         self._start_s = sumo.simulation.getTime() + self.period_s
-        self._step(ego)
+        self._step(boxes)
 
-    def _step(self, ego: Box) -> None:
-        sumo, moved_m = self._sumo, self._around.road_map.moved_m
-        place = self._ego.put(ego, self.period_s)
+    def _step(self, boxes: Sequence[Box]) -> None:
+        places = [ego.put(box, self.period_s) for ego, box in zip(self._egos, boxes, strict=True)]
         self._brake()
-        sumo.simulationStep()
-        vehicles: dict[str, Mapping[int, Any]] = dict(sumo.vehicle.getContextSubscriptionResults(EGO))
-        people: Found = sumo.poi.getContextSubscriptionResults(EGO)
-        own = vehicles.pop(EGO, None)  # off the road it is not among those round it
-        x_m, y_m = sumo.vehicle.getPosition(EGO) if own is None else position_of(own)
-        self.ego_error_m = max(self.ego_error_m, math.hypot(x_m - place.x_m, y_m - place.y_m))
-        users = road_users(vehicles, people, self._numbers, moved_m, (place.x_m, place.y_m))
-        if self._around.ground is not None and len(users):
-            users[:, 9] = spline_at(self._around.ground, 0, users[:, 2], users[:, 3])
-        self._users = users
+        self._sumo.simulationStep()
+        seen: list[Found] = [self._sumo.vehicle.getContextSubscriptionResults(ego.name) for ego in self._egos]
+        told = self._smooth.step({name: one[name] for one in seen for name in one if not is_ours(name)})
+        self._users = []
+        for ego, place, found in zip(self._egos, places, seen, strict=True):
+            own = found.get(ego.name)  # off the road it is not among those round it
+            x_m, y_m = self._sumo.vehicle.getPosition(ego.name) if own is None else position_of(own)
+            self.ego_error_m = max(self.ego_error_m, math.hypot(x_m - place.x_m, y_m - place.y_m))
+            self._users.append(self._read(ego, place, {name: told[name] for name in found if name in told}))
         self.signals.take(self._reader.read(self._start_s))
+
+    def _read(self, ego: Ego, place: Bumper, vehicles: Found) -> Array:
+        """Return the vehicles round an ego, and the people."""
+        around = self._around
+        people: Found = self._sumo.poi.getContextSubscriptionResults(ego.name)
+        room = CAPACITY + 1 - len(self._egos)  # for the others of ours
+        users = road_users(vehicles, people, self._numbers, around.road_map.moved_m, (place.x_m, place.y_m), room)
+        if around.ground is not None and len(users):
+            users[:, 9] = spline_at(around.ground, 0, users[:, 2], users[:, 3])
+        return users
 
     def _brake(self) -> None:
         """Let those who have collided come to rest."""

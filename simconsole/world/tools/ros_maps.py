@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from simconsole.profiles.files.loader import MAX_DATA_BYTES, read_bytes, read_text_of
 from simconsole.profiles.strict_yaml import parse
-from simconsole.profiles.validation import convert
+from simconsole.profiles.validation import convert, worded
 from simconsole.profiles.world import ArenaProfile
 from simconsole.values.errors import ProfileError
 from simconsole.world.arena.occupancy import FREE, MOST_CELLS, OCCUPIED, UNKNOWN, Grid, arena_of_grid, grid_of
@@ -27,7 +27,7 @@ Share = Annotated[float, Meta(ge=0.0, le=1.0)]
 class RosMap(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The keys of map.yaml."""
 
-    image: Annotated[str, Meta(pattern=r"^[^/\\]{1,200}\.(pgm|png)$")]
+    image: Annotated[str, worded(r"^[^/\\]{1,200}\.(pgm|png)$", "a file beside it that ends in .pgm or .png")]
     """A file beside it."""
     resolution: Annotated[float, Meta(ge=0.005, le=10.0)]  # m
     origin: Annotated[tuple[float, ...], Meta(min_length=3, max_length=3)]  # x, y in m, yaw in rad

@@ -35,7 +35,7 @@ class Crashes:
 
         `moves` tells how a road user moves as a body; without it that is guessed by kind and size.
         """
-        self._solid, self._struck, self._moves = solid, Struck(execution), moves or _guessed
+        self._solid, self._struck, self._moves = solid, Struck(execution), moves or guessed
         self._touched: frozenset[float] = frozenset()
 
     def step(self, vehicle: VehicleState, ego: Box, users: Array) -> Crash:
@@ -100,7 +100,8 @@ def motion_of(vehicle: VehicleState, solid: Solid) -> Moving:
     )
 
 
-def _guessed(user: RoadUser) -> Moving:
+def guessed(user: RoadUser) -> Moving:
+    """Return how a road user moves as a body, by its kind and size."""
     return box_moving(user, MASSES_KG[RoadUserKind(int(user.kind))])
 
 

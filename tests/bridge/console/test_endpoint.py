@@ -182,6 +182,21 @@ def test_rosout_warns_once_of_a_wheel_that_bears_a_share_of_the_cars_torque_only
     assert told[1:] == [(30, "force feedback eased to 74 %")]
 
 
+def test_rosout_warns_once_that_traffic_is_lost(
+    bridge: ConsoleBridge, join: Callable[..., Any], snapshot: Callable[..., Any]
+) -> None:
+    listener = join(bridge)
+    listener.send(op="subscribe", topic="/rosout")
+    for tick in (1, 2, 3):
+        shot = snapshot(tick)
+        shot.vector[LAYOUT.ahead.at("traffic_lost")] = float(tick > 1)
+        bridge.publish(shot, 0)
+    told = [(message["msg"]["level"], message["msg"]["msg"]) for message in listener.heard()]
+    assert len(told) == 2
+    assert told[1][0] == 30
+    assert told[1][1].endswith("traffic has failed: the road is empty")
+
+
 def test_a_controller_that_nobody_asked_for_is_told(
     bridge: ConsoleBridge, join: Callable[..., Any], snapshot: Callable[..., Any]
 ) -> None:

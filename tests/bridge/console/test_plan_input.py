@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
-from simconsole.bridge.console.plan_input import PLAN
+from simconsole.bridge.console.plan_input import ADVICE, PLAN
+from simconsole.bridge.console.surroundings import NOWHERE
 from simconsole.bridge.protocol.access import Role
 from simconsole.bridge.protocol.operations import write_publish
 from simconsole.profiles.bridge import BridgeProfile
@@ -111,3 +112,22 @@ def test_a_node_of_a_graph_plans_too_and_what_is_not_finite_is_refused() -> None
     refused = told.bridge.receive_plain(told.session, PLAN, path(x=math.nan), 0)
     assert "not finite" in refused.text
     assert len(told.plans) == 1
+
+
+def test_advice_of_a_controller_is_taken_and_what_is_none_is_refused_in_words() -> None:
+    told = list[str]()
+
+    def take(text: str) -> None:
+        if text == "drive on":
+            raise ValueError("that is no advice")
+        told.append(text)
+
+    bridge = ConsoleBridge(BridgeProfile(), around=NOWHERE._replace(on_advice=take))
+    session = bridge.router.connect("controller", role=Role.CONTROL)
+    refused, taken = (
+        bridge.receive(session, write_publish(ADVICE, {"data": text}), 0) for text in ("drive on", '{"kind": 2}')
+    )
+    assert "that is no advice" in refused.text
+    assert taken.kind == "command"
+    assert told == ['{"kind": 2}']
+    assert bridge.router.desk.lease.holder(0) is None, "it commands nothing"

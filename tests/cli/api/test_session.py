@@ -115,6 +115,13 @@ def test_a_session_runs_as_the_command_line_drives_it(tmp_path: Path, script: Pa
     assert drive.digest == results(done)["digest"]
 
 
+def test_without_a_controller_whoever_connects_over_the_bridge_commands() -> None:
+    drive = simconsole.load("demo").run(duration_s=2.0)  # in lockstep: its autopilot is a program of its own
+    answered = np.flatnonzero(np.diff(drive.column("ros.sequence")))
+    assert len(answered) > 80  # of 100 control periods, less the link's delay at the beginning
+    assert drive.replay().hashes_equal
+
+
 def test_an_observer_sees_each_control_period_and_commands_nothing(script: Path) -> None:
     session = simconsole.load("seated").with_values({"devices.driver": f"script:{script}"})
     seen: list[int] = []

@@ -3,6 +3,7 @@ import argparse
 import pytest
 
 from simconsole.cli.arguments.subparser import command, number
+from simconsole.cli.terminal.parser import Parser
 
 
 def test_a_number_out_of_its_bounds_is_refused_with_them_and_the_unit() -> None:
@@ -14,7 +15,7 @@ def test_a_number_out_of_its_bounds_is_refused_with_them_and_the_unit() -> None:
 
 
 def test_every_command_knows_what_does_it_and_whether_to_print_json() -> None:
-    root = argparse.ArgumentParser()
-    command(root.add_subparsers(), "go", "drive:drive", "goes")
+    root = Parser()
+    command(root.add_subparsers(dest="command"), "go", "drive:drive", "goes", "", "fast")
     said = root.parse_args(["go", "--json"])
     assert (said.does, said.json) == ("drive:drive", True)

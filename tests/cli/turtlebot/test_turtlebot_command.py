@@ -7,8 +7,14 @@ from typing import Any
 
 import pytest
 
+from simconsole.cli.turtlebot.turtlebot_command import failing
+from simconsole.drivers.robots.navigation.planner import KEEP_M
+from simconsole.profiles.faults import Silent
 from simconsole.recording.bundles.replay_bundle import replay_bundle
 from simconsole.recording.bundles.verification import verify
+from simconsole.session.fleet.members import members
+from simconsole.session.resolution import load_session, override, resolve
+from simconsole.values.errors import ProfileError
 from tests.drives.console import complaint, results, simconsole
 from tests.samples import Sample
 
@@ -26,7 +32,7 @@ class Run:
         assert done.returncode == 0, done.stdout + done.stderr
         self.cpu_s = after.children_user + after.children_system - before.children_user - before.children_system
         self.said = results(done)
-        self.text = done.stdout
+        self.text = done.stderr
 
 
 @pytest.fixture(scope="module")
@@ -45,6 +51,7 @@ def test_all_tasks_are_done_and_nobody_touches_anything(runs: list[Run]) -> None
         assert [robot["collisions"] for robot in robots] == [0, 0, 0]
         assert sorted(target for robot in robots for target in robot["tour"]) == ["A", "B", "C", "D", "E"]
         assert run.said["driven_m"] == pytest.approx(run.said["planned_m"], rel=0.1)
+        assert all(min(robot["least_to_wall_m"], robot["least_to_robot_m"]) >= KEEP_M for robot in robots)
 
 
 def test_slam_keeps_its_bounds_with_the_other_robots_moving(runs: list[Run]) -> None:
@@ -84,3 +91,17 @@ def test_one_seed_gives_one_drive(runs: list[Run], tmp_path: Path) -> None:
 
 def test_a_session_without_platforms_is_refused() -> None:
     assert "scenario.platforms" in complaint(simconsole("turtlebot", "--session", "turtlebot3_burger"))
+
+
+def test_a_robot_that_is_to_fail_hears_nothing_from_then_on_and_the_others_do() -> None:
+    parts = members(resolve(failing(load_session("turtlebot3_team"), "tb3_1", 70.0)))
+    faults = {name: part.session.scenario.faults for name, part in parts.items()}
+    assert faults == {"tb3_1": (Silent(at_s=70.0),), "tb3_0": (), "tb3_2": ()}
+
+
+@pytest.mark.parametrize("robot", ["nobody", "tb3_2"])
+def test_a_robot_that_cannot_be_made_to_fail_is_named(robot: str) -> None:
+    session = load_session("turtlebot3_team")
+    busy = override(session, scenario={"seat": "tb3_1", "faults": [{"kind": "refused", "at_s": 3.0}]})
+    with pytest.raises(ProfileError, match=robot):
+        failing(session if robot == "nobody" else busy, robot, 70.0)

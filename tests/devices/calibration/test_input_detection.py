@@ -19,7 +19,8 @@ from simconsole.devices.calibration.input_detection import (
     steady_readings,
     wheel_axis_of,
 )
-from simconsole.profiles.device import MIN_TRAVEL_RAW, DeviceKey
+from simconsole.profiles.device import DeviceKey
+from simconsole.profiles.parts.axes import MIN_TRAVEL_RAW
 from simconsole.values.errors import DeviceError
 
 A, B = DeviceKey(1, 2), DeviceKey(3, 4)

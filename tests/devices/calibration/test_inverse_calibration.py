@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 from simconsole.devices.calibration.calibrator import pressed_share
 from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.calibration.inverse_calibration import Intent, button_masks, pedal_raw, raw_sample, wheel_raw
-from simconsole.profiles.device import MIN_TRAVEL_RAW, CockpitProfile
+from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load
+from simconsole.profiles.parts.axes import MIN_TRAVEL_RAW
 from simconsole.values.signals import Button
 from tests.devices.calibration_run import CalibrationRun
 

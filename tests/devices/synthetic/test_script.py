@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from simconsole.devices.calibration.cockpit_settings import CockpitSettings
 from simconsole.devices.synthetic.script import ScriptSource
-from simconsole.profiles.device import ScriptPoint, ScriptProfile
+from simconsole.profiles.parts.script import ScriptPoint, ScriptProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.signals import Button, DriverInput
 from tests.devices.calibration_run import CalibrationRun

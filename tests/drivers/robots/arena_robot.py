@@ -10,7 +10,7 @@ from simconsole.drivers.robots.slam.odometry_track import Array
 from simconsole.drivers.robots.slam.planar import ORIGIN, composed
 from simconsole.drivers.robots.slam.rays import Turn
 from simconsole.profiles.files.vehicle_files import load_vehicle
-from simconsole.profiles.vehicle import TurtlebotProfile
+from simconsole.profiles.parts.turtlebot import TurtlebotProfile
 from simconsole.profiles.world import ArenaProfile
 from simconsole.values.host.jit import compiled
 from simconsole.values.platform import Pose

@@ -18,7 +18,7 @@ def test_the_command_writes_a_pair_that_says_it_is_open_loop(short: Path, tmp_pa
     out = tmp_path / "heavy"
     done = simconsole("replay", short, "--set", "body.mass_kg=1900", "--out", out, "--json")
     assert done.returncode == 0, done.stderr
-    assert OPEN_LOOP in done.stdout
+    assert OPEN_LOOP in done.stderr
     found = results(done)
     page = (out / PAIR).read_text()
     assert found["report"] == str(out / PAIR)

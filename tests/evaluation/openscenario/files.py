@@ -45,6 +45,7 @@ def written(
     place: Any = None,
     actor: str = "Lead",
     also: Any = None,
+    ego: Any = None,
     act_trigger: Any = None,
     events: int = 1,
     minor: int = 3,
@@ -60,6 +61,8 @@ def written(
     init.add_init_action("Lead", xosc.AbsoluteSpeedAction(8, STEP))
     if also is not None:
         init.add_init_action("Lead", also)
+    if ego is not None:
+        init.add_init_action("Ego", ego)
     board = xosc.StoryBoard(init, at_s(12, "stop"))
     if action is not None:
         maneuver = xosc.Maneuver("maneuver")
@@ -120,6 +123,20 @@ def route() -> Any:
     return xosc.AssignRouteAction(found)
 
 
+def switch(on: bool, longitudinal: bool | None = None) -> Any:
+    return xosc.ActivateControllerAction(on, on if longitudinal is None else longitudinal)
+
+
+def theirs() -> Any:
+    return xosc.ControllerAction(xosc.AssignControllerAction(xosc.Controller("theirs")))
+
+
+def overridden() -> Any:
+    values = xosc.OverrideControllerValueAction()
+    values.set_brake(True, 0.5)
+    return xosc.ControllerAction(overrideControllerValueAction=values)
+
+
 def two_conditions() -> Any:
     group = xosc.ConditionGroup()
     group.add_condition(by(xosc.SpeedCondition(5, MORE)))
@@ -177,6 +194,8 @@ UNDERSTOOD: Final[dict[str, Callable[[], bytes]]] = {
     "a condition that holds at once": lambda: written(
         brakes(), xosc.EntityTrigger("condition", 0, NONE, xosc.TimeHeadwayCondition("Lead", 3, LESS), "Ego")
     ),
+    "a controller that is switched on": lambda: written(switch(True), actor="Ego", ego=switch(False)),
+    "a controller": lambda: written(also=theirs(), minor=2),
     "several events": lambda: written(brakes(), events=3),
 }
 """By what it shows: files that are imported whole."""
@@ -216,6 +235,13 @@ NOT_UNDERSTOOD: Final[dict[str, tuple[str, Callable[[], bytes]]]] = {
         "StoryboardElementStateCondition",
         lambda: written(brakes(), xosc.ValueTrigger("state", 0, NONE, STATE)),
     ),
+    "half a controller": ("ActivateControllerAction", lambda: written(switch(True, False), actor="Ego")),
+    "a pedal that is overridden": ("Brake", lambda: written(also=overridden())),
+    "a controller that is switched off": (
+        "PrivateAction",
+        lambda: written(xosc.ControllerAction(activateControllerAction=switch(False)), actor="Ego"),
+    ),
+    "a controller switched by a gap": ("PrivateAction", lambda: written(switch(True), by(distance()), actor="Ego")),
     "one condition or another": ("ConditionGroup", lambda: written(brakes(), either())),
 }
 """By what it shows: the element that is refused, and the file."""

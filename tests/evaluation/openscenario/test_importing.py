@@ -55,13 +55,17 @@ def refusal(content: bytes, partly: bool) -> str | None:
     return None
 
 
+IDLE: Final = ("nothing happens", *(name for name in UNDERSTOOD if name.startswith("a controller")))
+"""Files in which Lead does nothing."""
+
+
 @pytest.mark.parametrize("name", UNDERSTOOD)
-def test_what_is_understood_is_imported_whole_and_drives(name: str) -> None:
+def test_what_is_understood_is_imported_whole(name: str) -> None:
     found = imported(UNDERSTOOD[name](), "made.xosc")
     assert not [one for one in found.left if one.changes]
     assert found.profile.duration_s == 12.0
     assert [actor.name for actor in found.profile.actors] == ["Lead"]
-    assert len(found.profile.actors[0].acts) == {"nothing happens": 0, "several events": 3}.get(name, 1)
+    assert len(found.profile.actors[0].acts) == {"several events": 3}.get(name, int(name not in IDLE))
     assert found.profile.actors[0].kind == {"van": "van", "truck": "van", "pedestrian": "pedestrian"}.get(name, "car")
 
 
@@ -225,3 +229,31 @@ def test_a_vehicle_without_a_place_is_listed_too() -> None:
     )
     found = imported(content.replace(b"<RoadNetwork", b"<Elsewhere/><RoadNetwork"), "made.xosc", partly=True)
     assert [one.element for one in found.left if one.changes] == ["Elsewhere", "ScenarioObject"]
+
+
+def test_a_parameter_counts_in_the_story_or_maneuver_that_declares_it() -> None:
+    def speeds_kmh(content: bytes, **given: str) -> list[float | None]:
+        return [act.speed_kmh for act in imported(content, "made.xosc", parameters=given).profile.actors[0].acts]
+
+    asked = b'AbsoluteTargetSpeed value="$speed"'
+    content = UNDERSTOOD["speed by time"]().replace(b'AbsoluteTargetSpeed value="0.0"', asked)
+    assert speeds_kmh(content) == [pytest.approx(21.6)]
+    assert speeds_kmh(content, speed="2") == [pytest.approx(7.2)]
+    own = b'<ParameterDeclaration name="speed" parameterType="double" value="%s"/>'
+    own = b"<ParameterDeclarations>" + own + b"</ParameterDeclarations>"
+    in_story = content.replace(b'<Story name="story">', b'<Story name="story">' + own % b"3")
+    assert speeds_kmh(in_story, speed="2") == [pytest.approx(10.8)]
+    in_maneuver = in_story.replace(b'<Maneuver name="maneuver">', b'<Maneuver name="maneuver">' + own % b"4")
+    assert speeds_kmh(in_maneuver) == [pytest.approx(14.4)]
+    later = in_story.replace(b"<StopTrigger>", b'<Story name="late"/><StopTrigger>', 1)
+    assert speeds_kmh(later) == [pytest.approx(10.8)]
+
+
+def test_a_parameter_that_is_not_declared_and_a_file_of_values_are_refused() -> None:
+    with pytest.raises(ProfileError, match=r"^made.xosc: --parameter: value mass: one of speed$"):
+        imported(written(), "made.xosc", parameters={"mass": "1"})
+    values = b"<OpenSCENARIO><FileHeader/><ParameterValueDistribution/></OpenSCENARIO>"
+    with pytest.raises(
+        ProfileError, match=r"^values.xosc: line 1: <ParameterValueDistribution>: values for another file"
+    ):
+        imported(values, "values.xosc")

@@ -34,5 +34,6 @@ def test_the_page_names_worst_cases_losses_and_how_to_drive_one_again(tmp_path: 
     assert page.count("<code>") == 3
     assert "twice &amp; gone" in page
     assert 'title="session, environment.friction 0.6">2</td>' in page
-    assert "<svg" in page
+    assert 'aria-label="distribution of a_m"' in page
+    assert 'd="M0 28H0.0V21.0H17.1V14.0H34.3V7.0H120.0V0.0"' in page  # 1, 2, 3 and 8, a quarter of the drives each
     assert page == (tmp_path / "sweep.html").read_text()

@@ -53,7 +53,9 @@ def cluster(folder: Path, workers: int) -> Iterator[Cluster]:
 def pool_workers_of(pid: int) -> list[int]:
     """The processes that drive for a process."""
     children = [child for task in Path(f"/proc/{pid}/task").iterdir() for child in read(task / "children").split()]
-    return [int(child) for child in children if b"sweep.worker_pool" in read(Path(f"/proc/{child.decode()}/cmdline"))]
+    return [
+        int(child) for child in children if b"evaluation.sweep.worker" in read(Path(f"/proc/{child.decode()}/cmdline"))
+    ]
 
 
 def read(path: Path) -> bytes:

@@ -4,8 +4,9 @@ from pathlib import Path
 
 import pytest
 
+from simconsole.evaluation.sweep.driving import drive_task
 from simconsole.evaluation.sweep.engines import drive_here, drive_on_dask
-from simconsole.evaluation.sweep.task import TaskResult, drive_task
+from simconsole.evaluation.sweep.task import TaskResult
 from simconsole.values.errors import SimConsoleError
 from tests.evaluation.sweep.clusters import cluster, kill, pool_workers_of
 from tests.evaluation.sweep.plans import grip

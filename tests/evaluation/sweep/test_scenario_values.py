@@ -4,8 +4,8 @@ from typing import Any
 import pytest
 import yaml
 
+from simconsole.evaluation.sweep.driving import drive_task
 from simconsole.evaluation.sweep.plan import load_plan
-from simconsole.evaluation.sweep.task import drive_task
 from simconsole.values.errors import ProfileError
 from tests.evaluation.sweep.plans import SCRIPT, SESSION, write_plan
 

@@ -7,7 +7,8 @@ import msgspec
 import pytest
 
 from simconsole.evaluation.sweep import worker_pool as pool_module
-from simconsole.evaluation.sweep.task import Task, TaskResult, drive_task
+from simconsole.evaluation.sweep.driving import drive_task
+from simconsole.evaluation.sweep.task import Task, TaskResult
 from simconsole.evaluation.sweep.worker_pool import PoolWorker, WorkerPool
 from tests.evaluation.sweep.plans import grip
 from tests.patience import wait_until

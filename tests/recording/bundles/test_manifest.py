@@ -2,6 +2,7 @@ import json
 from pathlib import Path
 
 import pytest
+from jsonschema import Draft202012Validator
 
 from simconsole.recording.bundles.bundle import BundleWriter, open_bundle
 from simconsole.recording.bundles.manifest import (
@@ -17,7 +18,6 @@ from simconsole.recording.log_header import LogHeader
 from simconsole.values.errors import RecordingError
 from tests.manifests import content_of, forge
 from tests.paths import ROOT
-from tests.vehicle.test_schema import fits
 
 
 @pytest.mark.parametrize(
@@ -140,7 +140,7 @@ def test_a_manifest_keeps_to_its_published_schema(bundle: Path, short: Path) -> 
     schema = json.loads((ROOT / "docs" / "schemas" / "manifest.schema.json").read_text())
     for folder in (bundle, short):
         manifest = json.loads((folder / "manifest.json").read_text())
-        assert fits(manifest, schema, schema)
-        assert not fits(manifest | {"files": []}, schema, schema)
-        assert not fits(manifest | {"invented": 1}, schema, schema)
-        assert not fits(manifest | {"sha256": "short"}, schema, schema)
+        assert Draft202012Validator(schema).is_valid(manifest)
+        assert not Draft202012Validator(schema).is_valid(manifest | {"files": []})
+        assert not Draft202012Validator(schema).is_valid(manifest | {"invented": 1})
+        assert not Draft202012Validator(schema).is_valid(manifest | {"sha256": "short"})

@@ -47,10 +47,10 @@ def test_replay_of_the_demo_finds_every_hash_equal(demo: Demo) -> None:
         "remarks": [],
         "vouches_for": ["drive.parquet", road_map, "session.json"],
     }
-    assert "every hash equal" in done.stdout
+    assert "every hash equal" in done.stderr
     says = f"this vouches for drive.parquet, {road_map}, session.json; "
     says += "for manifest.json, report.html, scene.rrd: simconsole verify"
-    assert says in done.stdout.splitlines()
+    assert says in done.stderr.splitlines()
 
 
 def test_replays_of_the_demo_are_equal(demo: Demo, sample: Sample) -> None:
@@ -125,7 +125,7 @@ def test_one_forged_brake_value_is_named_with_tick_and_field(
     assert {"tick": FORGED_TICK, "recorded": difference["recorded"], "replayed": difference["replayed"]} in (
         difference["around"]
     )
-    assert f"750 ticks replayed, {len(found['differences'])} fields differ" in done.stdout
+    assert f"750 ticks replayed, {len(found['differences'])} fields differ" in done.stderr
 
 
 def test_a_forged_brake_value_in_the_demo_is_found_too(
@@ -159,7 +159,7 @@ def test_one_changed_vehicle_value_is_named_with_tick_and_field(
     difference = results(done)["differences"][0]
     assert 1 <= difference["first_tick"] <= FORGED_TICK
     assert difference["field"].split(".")[0] in ("vehicle", "platform")
-    assert difference["field"] in done.stdout
+    assert difference["field"] in done.stderr
 
 
 def test_a_session_altered_into_nonsense_is_one_line(copy: Path, rewrite_session: Callable[..., None]) -> None:
@@ -191,7 +191,7 @@ def test_other_sources_are_told_and_not_refused(copy: Path, rewrite_checksums: C
     assert done.returncode == 0, done.stdout + done.stderr
     (remark,) = results(done)["remarks"]
     assert f"{copy / 'drive.log'}: recorded with other sources: 555555555555 (simconsole 0.0.9), here " in remark
-    assert remark in done.stdout.splitlines()
+    assert remark in done.stderr.splitlines()
 
 
 @pytest.mark.parametrize("command", ["replay", "report", "view"])

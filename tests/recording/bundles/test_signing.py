@@ -7,13 +7,13 @@ import pytest
 from cryptography.hazmat.primitives import serialization as form
 from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey, Ed25519PublicKey
+from jsonschema import Draft202012Validator
 
 from simconsole.recording.bundles.bundle import add_export
 from simconsole.recording.bundles.sealing import sealed
 from simconsole.recording.bundles.signing import make_key, remove_signature, sign, signature_problem, signed_by
 from simconsole.values.errors import RecordingError
 from tests.paths import ROOT
-from tests.vehicle.test_schema import fits
 
 
 @pytest.fixture
@@ -149,6 +149,8 @@ def test_a_signature_keeps_to_its_published_schema(bundle: Path, key: Path) -> N
     schema = json.loads((ROOT / "docs" / "schemas" / "signature.schema.json").read_text())
     sign(bundle, key)
     content = json.loads((bundle / "signature.json").read_text())
-    assert fits(content, schema, schema)
-    assert not fits(content | {"algorithm": "none"}, schema, schema)
-    assert not fits({name: value for name, value in content.items() if name != "signature"}, schema, schema)
+    assert Draft202012Validator(schema).is_valid(content)
+    assert not Draft202012Validator(schema).is_valid(content | {"algorithm": "none"})
+    assert not Draft202012Validator(schema).is_valid(
+        {name: value for name, value in content.items() if name != "signature"}
+    )

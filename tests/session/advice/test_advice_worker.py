@@ -20,15 +20,15 @@ from simconsole.session.advice.advice_worker import (
     AdviceSource,
     AdviceWorker,
     NewestAdvice,
-    from_bytes,
-    to_bytes,
+    ToldAdvice,
+    hears_advice,
 )
 from simconsole.session.lifecycle import drive
 from simconsole.session.preconditions import check_session
-from simconsole.session.resolution import load_session, resolve
+from simconsole.session.resolution import load_session, override, resolve
 from simconsole.values.errors import ProfileError
 from simconsole.values.units import tick_time_ns
-from simconsole.world.rules.speed_advice import NO_ADVICE, STOP, Advice, Advised
+from simconsole.world.rules.speed_advice import NO_ADVICE, STOP, Advice, Advised, from_bytes, to_bytes
 
 BAND = Advice(Advised.SPEED, 8.0, 11.0, 10.5)
 SESSION = """\
@@ -87,6 +87,26 @@ def test_advice_is_shown_until_it_is_old_and_logged_when_it_is_another(tmp_path:
     assert [source.take_messages(tick) for tick, _ in shown] == [[], [], [(ADVICE, to_bytes(NO_ADVICE))], []]
     slot.write(3_300_000_000, to_bytes(STOP))
     assert source.take_messages(826) == [(ADVICE, to_bytes(STOP))]
+
+
+def test_what_a_controller_says_is_logged_when_it_is_another() -> None:
+    told = ToldAdvice()
+    assert told.take_messages(1) == []
+    told.take(to_bytes(STOP).decode())
+    told.take(to_bytes(BAND).decode())
+    assert told.take_messages(6) == [(ADVICE, to_bytes(BAND))]
+    told.take(to_bytes(BAND).decode())
+    assert told.take_messages(11) == []
+    with pytest.raises(ValueError, match="7 is not a valid Advised"):
+        told.take('{"kind": 7}')
+    assert told.take_messages(16) == []
+
+
+def test_advice_of_a_controller_is_kept_in_lockstep_only(tmp_path: Path) -> None:
+    paced = load_session(str(session(tmp_path)))
+    assert not hears_advice(paced)
+    assert hears_advice(override(paced, mode={"pacing": "lockstep"}))
+    assert not hears_advice(override(paced, mode={"pacing": "lockstep"}, features={"speed_advice": False}))
 
 
 def test_a_bridge_that_was_started_again_is_looked_for_where_it_listens_now(

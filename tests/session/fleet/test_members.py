@@ -44,7 +44,8 @@ def test_platforms_may_be_of_different_kinds() -> None:
     [
         ({"mode": {"pacing": "realtime"}}, "mode.pacing: lockstep"),
         ({"mode": {"start": "on_request"}}, "mode.start: at_once"),
-        ({"environment": {"traffic": {}}}, "environment.traffic: none"),
+        ({"environment": {"traffic": {}}}, "environment.traffic: value given: none, or sumo"),
+        ({"environment": {"traffic": {"sumo": {}}}}, "tb3_0: vehicle: no robot"),
         ({"outputs": {"bridge": None}}, "outputs.bridge"),
         ({"environment": {"world": None}}, "tb3_0: start: value missing: the session has no world"),
         ({"scenario": {"platforms": [{"name": f"r{number}"} for number in range(4)]}}, "r3: start: value missing"),

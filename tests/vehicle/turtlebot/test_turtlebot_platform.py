@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from simconsole.profiles.files.loader import load, parse, profiles_folder
-from simconsole.profiles.vehicle import TurtlebotProfile, VehicleProfile
+from simconsole.profiles.parts.turtlebot import TurtlebotProfile
+from simconsole.profiles.vehicle import VehicleProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.platform import NO_OBSTACLES, Ground, Obstacles, Pose
 from simconsole.vehicle.turtlebot.robot_state import OBSTACLES_AT, PARAMETERS, RobotParameters

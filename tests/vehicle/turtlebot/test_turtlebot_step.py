@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from simconsole.profiles.files.loader import load
-from simconsole.profiles.vehicle import OdometryErrors, TurtlebotProfile
+from simconsole.profiles.parts.turtlebot import OdometryErrors, TurtlebotProfile
 from simconsole.values.host.jit import compiled, plain
 from simconsole.values.platform import NO_OBSTACLES, Obstacles, Pose
 from simconsole.values.state_vector import PLATFORM_AT

@@ -4,7 +4,7 @@ from msgspec.structs import replace
 
 from simconsole.profiles.files.loader import load
 from simconsole.profiles.files.world_files import load_world
-from simconsole.profiles.vehicle import TurtlebotProfile
+from simconsole.profiles.parts.turtlebot import TurtlebotProfile
 from simconsole.values.host.jit import plain
 from simconsole.values.layout import read
 from simconsole.values.platform import Ground, Pose

@@ -23,20 +23,20 @@ def box(x_m: float, y_m: float = 0.0, yaw_rad: float = 0.0, speed_mps: float = 0
     return Box(x_m=x_m, y_m=y_m, yaw_rad=yaw_rad, speed_mps=speed_mps, length_m=LENGTH_M, width_m=1.8)
 
 
-def around(ego: Box, world: str = "urban_signals") -> Surroundings:
+def around(*egos: Box, world: str = "urban_signals") -> Surroundings:
     profile = load_world(world)
     assert isinstance(profile, RoadsProfile)
     roads = roads_of(open_world(profile))
     assert roads is not None
     return Surroundings(
-        road_map=roads.road_map, net=read_map(profile.map), legs=roads.legs, tick_hz=HZ, ego=ego, duration_s=120.0
+        road_map=roads.road_map, net=read_map(profile.map), legs=roads.legs, tick_hz=HZ, egos=egos, duration_s=120.0
     )
 
 
 @contextmanager
-def sumo_traffic(ego: Box, seed: int = 1, period_ms: int = 40, **sumo: Any) -> Iterator[SumoTraffic]:
+def sumo_traffic(*egos: Box, seed: int = 1, period_ms: int = 40, **sumo: Any) -> Iterator[SumoTraffic]:
     profile = TrafficProfile(seed=seed, period_ms=period_ms, sumo=SumoProfile(**{"vehicles": 0, **sumo}))
-    traffic = SumoTraffic(profile, around(ego))
+    traffic = SumoTraffic(profile, around(*egos))
     try:
         yield traffic
     finally:

@@ -15,6 +15,7 @@ from simconsole.profiles.files.world_files import load_world
 from simconsole.values.errors import ProfileError
 from simconsole.values.signals import SignalState
 from simconsole.world.kinds.worlds import open_world
+from simconsole.world.sumo_traffic import ego as ego_module
 from simconsole.world.sumo_traffic.ego import CLEAR_M, EGO, has_jumped
 from simconsole.world.traffic.road_users import NOBODY, Box, RoadUser, RoadUserKind, users
 from tests.world.sumo_traffic.on_sumo import LENGTH_M, NET, around, box, configuration, sumo_traffic
@@ -48,6 +49,44 @@ def test_ego_is_in_sumo_exactly_where_it_is_in_the_console() -> None:
         angle_deg = traffic._sumo.vehicle.getAngle(EGO)
     assert angle_deg == pytest.approx(90.0 - math.degrees(1.2))
     assert traffic.lost is None
+
+
+def test_ego_that_drives_on_after_the_end_of_its_route_in_sumo_stays_exactly_there(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The world's route is a loop; in SUMO it is repeated up to LONG_M, here once only, and driven half again."""
+    monkeypatch.setattr(ego_module, "LONG_M", 1.0)
+    length_m = open_world(load_world("urban_signals")).route.length_m
+    ways = [on_route(s_m % length_m, 80.0) for s_m in np.arange(0.0, 1.5 * length_m, 3.2)]
+    with sumo_traffic(ways[0], vehicles=10) as traffic:
+        for way in ways:
+            traffic.step(way)
+            assert traffic.ego_error_m == 0.0
+            assert EGO in traffic._sumo.vehicle.getIDList()
+    assert traffic.lost is None
+
+
+def test_own_seed_step_begin_and_end_of_a_configuration(tmp_path: Path) -> None:
+    """Seed and step are the session's; it begins when it says; and its end ends nothing."""
+    flow = '<flow id="f" begin="100" end="200" probability="0.3"><route edges="road0 road1 road2"/></flow>'
+    path = Path(configuration(tmp_path, flow, ACTUATED))
+    seen = []
+    for seed, own in ((1, 5), (1, 6), (2, 5)):
+        own_times = '<time><begin value="100"/><end value="103"/><step-length value="1"/></time>'
+        own_seed = f'<random_number><seed value="{own}"/></random_number>'
+        text = path.read_text().partition("<time>")[0].replace("</configuration>", "")
+        path.write_text(f"{text}{own_times}{own_seed}</configuration>")
+        with sumo_traffic(box(-60.0), seed=seed, config=str(path), warm_up_s=2.0, radius_m=1500.0) as traffic:
+            assert traffic._sumo.simulation.getTime() == pytest.approx(102.0 + STEP_S)
+            place = next(k for k, one in enumerate(traffic.road_map.signals) if one.id == "junction0")
+            rows = [traffic.step(box(-60.0)).tobytes() for _ in range(200)]
+            at_s = (102.0 + 201 * STEP_S) % 13.0
+            left_s = 4.0 - at_s if at_s < 4.0 else 7.0 - at_s if at_s < 7.0 else 13.0 - at_s
+            assert traffic.signals.shown(place, 4 * 200).change_s[0] == pytest.approx(left_s, abs=2 * STEP_S)
+            assert traffic.lost is None
+            assert len(traffic.road_users()) > 0
+        seen.append(rows)
+    assert seen[0] == seen[1] != seen[2]
 
 
 def test_follower_stops_behind_a_parked_ego_at_its_minimum_gap(tmp_path: Path) -> None:

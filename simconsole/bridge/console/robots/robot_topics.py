@@ -5,6 +5,7 @@ Under a namespace the frames have it as their prefix. The transform from map to 
 
 from typing import Any, Final
 
+from simconsole.bridge.console.camera_topics import optical
 from simconsole.bridge.console.published_tick import (
     FOOTPRINT_FRAME,
     ONCE,
@@ -14,15 +15,18 @@ from simconsole.bridge.console.published_tick import (
     prefixed,
     quaternion,
 )
+from simconsole.bridge.console.robots.depth_topics import OPTICAL_FRAME, DepthTopics
 from simconsole.bridge.messages import Registry
 from simconsole.profiles.bridge import BridgeProfile
-from simconsole.profiles.vehicle import TurtlebotProfile, VehicleProfile
+from simconsole.profiles.parts.turtlebot import TurtlebotProfile
+from simconsole.profiles.vehicle import VehicleProfile
 from simconsole.values.draws import Channel, normal
 from simconsole.values.kernels import Row
 from simconsole.values.layout import read
 from simconsole.values.units import NS_PER_S, STANDARD_GRAVITY_MPS2
 from simconsole.vehicle.turtlebot.robot_state import ROBOT, RobotState, others_of
 from simconsole.world.arena.arena_world import ArenaWorld
+from simconsole.world.arena.depth_camera import DepthCamera
 from simconsole.world.arena.laser_scan import Execution, LaserScanner
 from simconsole.world.arena.lidar import TWO_PI
 from simconsole.world.arena.raycast import ray_grid
@@ -55,9 +59,15 @@ class RobotTopics:
     """Builds the messages of one robot."""
 
     def __init__(
-        self, registry: Registry, bridge: BridgeProfile, profile: TurtlebotProfile, scanner: LaserScanner | None
+        self,
+        registry: Registry,
+        bridge: BridgeProfile,
+        profile: TurtlebotProfile,
+        scanner: LaserScanner | None,
+        camera: DepthTopics | None = None,
     ) -> None:
         """Generate the classes of all topics. Without a `scanner` there is no /scan: the world is no arena."""
+        self._camera = camera
         self._types: dict[str, Any] = {name.partition("/")[2]: registry.struct(name) for name in _TYPES.split()}
         self._profile = profile
         self._scanner = scanner
@@ -78,6 +88,7 @@ class RobotTopics:
             OutputTopic(BATTERY, "sensor_msgs/BatteryState", 1.0, self._battery, measured=True),
             OutputTopic(SENSORS, "turtlebot3_msgs/SensorState", 30.0, self._sensors, measured=True),
             *((scan,) if self._scanner is not None else ()),
+            *(() if self._camera is None else self._camera.topics()),
             OutputTopic(ODOMETRY, "nav_msgs/Odometry", 30.0, self._odometry, measured=True),
         )
 
@@ -224,7 +235,11 @@ class RobotTopics:
             ("base_link", "mag_link", (profile.body_x_m, 0.0, profile.imu.z_m - base_z)),
         )
         unturned = (0.0, 0.0, 0.0, 1.0)
-        return self._types["TFMessage"]([self._transform(tick, *place, unturned) for place in places])
+        frames = [self._transform(tick, *place, unturned) for place in places]
+        if profile.depth_camera is not None:
+            place = (profile.depth_camera.x_m, 0.0, profile.depth_camera.z_m - base_z)
+            frames.append(self._transform(tick, "base_link", OPTICAL_FRAME, place, optical(0.0, 0.0)))
+        return self._types["TFMessage"](frames)
 
     def _transform(
         self, tick: PublishedTick, parent: str, child: str, place: tuple[float, ...], turn: tuple[float, ...]
@@ -270,9 +285,12 @@ def robot_table(vehicle: VehicleProfile | None, arena: ArenaWorld | None, execut
     robot: TurtlebotProfile = vehicle
 
     def topics(registry: Registry, bridge: BridgeProfile) -> tuple[OutputTopic, ...]:
-        seed, scanner = bridge.link.seed, None
+        seed, scanner, camera = bridge.link.seed, None, None
         if arena is not None:
             scanner = LaserScanner(robot.lidar, ray_grid(arena.outlines), seed, execution)
-        return RobotTopics(registry, bridge, robot, scanner).topics()
+        if arena is not None and robot.depth_camera is not None:
+            seen = DepthCamera(robot.depth_camera, arena.profile, robot.height_m, execution)
+            camera = DepthTopics(registry, bridge, seen)
+        return RobotTopics(registry, bridge, robot, scanner, camera).topics()
 
     return topics

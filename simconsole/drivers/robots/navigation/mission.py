@@ -128,9 +128,11 @@ class Mission:
 
 def problem_by(planner: Planner, surface: Surface, robots: Sequence[Place], tasks: Sequence[Place]) -> Problem:
     """Return the problem whose costs are the lengths in m of the plans that robots would follow; no way: infinite."""
+    starts = (ways_m(planner, surface, robot, tasks) for robot in robots)
+    return Problem(tuple(starts), tuple(ways_m(planner, surface, task, tasks) for task in tasks))
 
-    def lengths(start: Place) -> tuple[float, ...]:
-        paths = [planner.path(surface, start, task) for task in tasks]
-        return tuple(math.inf if path is None else length_m(path) for path in paths)
 
-    return Problem(tuple(map(lengths, robots)), tuple(map(lengths, tasks)))
+def ways_m(planner: Planner, surface: Surface, start: Place, tasks: Sequence[Place]) -> tuple[float, ...]:
+    """Return the lengths in m of the plans from a place to each task; no way: infinite."""
+    paths = [planner.path(surface, start, task) for task in tasks]
+    return tuple(math.inf if path is None else length_m(path) for path in paths)

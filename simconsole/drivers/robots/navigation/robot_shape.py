@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from simconsole.profiles.vehicle import TurtlebotProfile
+from simconsole.profiles.parts.turtlebot import TurtlebotProfile
 
 
 class RobotShape(NamedTuple):

@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from simconsole.bridge.client.bridge_client import BridgeClient
+from simconsole.bridge.protocol.backoff import DEAD_AFTER_S
 from simconsole.drivers.robots.fleet.team import Team
 from simconsole.drivers.robots.nodes.navigation_node import NavigationNode
 from simconsole.drivers.robots.nodes.shared_client import NodePort, SharedClient
@@ -38,16 +39,18 @@ def run(
     team: Team,
     *,
     stop: Callable[[], bool] = lambda: False,
+    lockstep: bool = True,
     patience_s: float = 10.0,
     told: Callable[[Team], None] = lambda team: None,
 ) -> FleetDriven:
-    """Drive in lockstep until the team is done, the server ends the session, or `stop()` is true.
+    """Drive until the team is done, the server ends the session, or `stop()` is true.
 
     Args:
         url: the rosbridge server, `ws://HOST:PORT`.
         robots: in the order of the team's members.
         team: what they do.
         stop: called after every message and four times a second.
+        lockstep: the console waits for each command; else nobody waits, and a server that is silent is gone.
         patience_s: how long to try to connect.
         told: called likewise, with the team.
 
@@ -55,10 +58,10 @@ def run(
         BridgeError: no server answers at `url`.
     """
     shared_map = SharedMap(compiled)
-    with BridgeClient(url, until_good_bye=True, dead_after_s=math.inf) as client:
+    with BridgeClient(url, until_good_bye=True, dead_after_s=math.inf if lockstep else DEAD_AFTER_S) as client:
         shared = SharedClient(client)
         slams = [_slam(shared.port(), shared_map, robot) for robot in robots]
-        drivers = [_driver(shared.port(), robot, number, team) for number, robot in enumerate(robots)]
+        drivers = [_driver(shared.port(), robot, number, team, lockstep) for number, robot in enumerate(robots)]
         shared_map.warm_up()
         for member in team.members:
             member.navigator.warm_up()
@@ -75,7 +78,7 @@ def run(
                 ended = "mission done"
                 # Leave what is asked next unanswered: a server that waits sees in that very tick that its client is
                 # gone, and not, by chance, a tick before or after. So equal seeds give equal recordings.
-                while not stop() and not any(port.waiting for port, _ in drivers):
+                while lockstep and not stop() and not any(port.waiting for port, _ in drivers):
                     shared.pump(WAIT_S)
         except BridgeError as error:
             ended = str(error)
@@ -89,14 +92,15 @@ def _slam(port: NodePort, shared_map: SharedMap, robot: Robot) -> SlamNode:
     return node
 
 
-def _driver(port: NodePort, robot: Robot, number: int, team: Team) -> tuple[NodePort, NavigationNode]:
+def _driver(port: NodePort, robot: Robot, number: int, team: Team, lockstep: bool) -> tuple[NodePort, NavigationNode]:
     member = team.members[number]
     node = NavigationNode(
         port,
         member.navigator,
         member,
         namespace=robot.namespace,
-        lockstep=True,
+        lockstep=lockstep,
         yields=lambda time_s, pose: team.yields(number, time_s, pose),
+        heard=lambda time_s, obeys: team.hear(number, time_s, obeys),
     )
     return port, node

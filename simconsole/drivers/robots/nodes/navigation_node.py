@@ -46,6 +46,8 @@ COMMAND: Final = "/cmd_vel"
 PLAN: Final = "/plan"
 MODE: Final = "/console/mode"
 REQUEST: Final = "/console/request"
+AUTONOMOUS: Final = "AUTONOMOUS"
+"""The console's mode in which commands drive; what has no such topic, as a real robot, is always in it."""
 CONTROL_NS: Final = NS_PER_S // 10
 """Between two decisions; in between the last one is repeated."""
 OLD_NS: Final = 2 * NS_PER_S
@@ -88,6 +90,7 @@ class NavigationNode:
         namespace: str = "",
         lockstep: bool = False,
         yields: Callable[[float, Pose], bool] = lambda time_s, pose: False,
+        heard: Callable[[float, bool], None] = lambda time_s, obeys: None,
     ) -> None:
         """Register with `client`, which is not connected yet.
 
@@ -98,8 +101,10 @@ class NavigationNode:
             namespace: of its topics and frames, `/tb3_0`; tf's topics and the frame of the map have none.
             lockstep: the console waits for each answer, and this program waits for SLAM.
             yields: whether the robot, at this time and place, stands for another one.
+            heard: told of each odometry's time, and whether the robot drives by commands as far as is known.
         """
         self.commands = 0
+        self._heard = heard
         self._yields = yields
         self._mission = mission
         self._client = client
@@ -160,6 +165,7 @@ class NavigationNode:
         time_ns = nanoseconds(odometry.header.stamp)
         here = pose_of(odometry.pose.pose)
         self._track.add(time_ns / NS_PER_S, here)
+        self._heard(time_ns / NS_PER_S, self._mode in ("", AUTONOMOUS))
         self._look()
         self._await_slam()
         grid = self._localisation.take()
@@ -168,7 +174,7 @@ class NavigationNode:
         if self._decided_ns is None or time_ns >= self._decided_ns + CONTROL_NS:
             self._decided_ns = time_ns
             self._speeds = self._decide(time_ns, here)
-        if self._count % _ASK_EVERY == 0 and self._mode != "AUTONOMOUS":
+        if self._count % _ASK_EVERY == 0 and self._mode != AUTONOMOUS:
             self._client.publish(self._topics.request, {"data": "autonomous"})
         self._count += 1
         self._tell(time_ns)

@@ -21,7 +21,7 @@ from simconsole.drivers.robots.nodes.team_program import drive_team
 from simconsole.processes.lifetimes import ATTACHED, follow_parent
 from simconsole.profiles.files.vehicle_files import load_vehicle
 from simconsole.profiles.files.world_files import load_world
-from simconsole.profiles.vehicle import TurtlebotProfile
+from simconsole.profiles.parts.turtlebot import TurtlebotProfile
 from simconsole.profiles.world import ArenaProfile
 from simconsole.values.errors import ProfileError, SimConsoleError
 from simconsole.values.host.jit import compiled
@@ -43,7 +43,7 @@ def parser() -> argparse.ArgumentParser:
     navigate.add_argument("--robot", default="turtlebot3_burger", metavar="VEHICLE", help="its profile")
     navigate.add_argument("--arena", metavar="WORLD", help="explore it, then go to its targets; else wait for goals")
     navigate.add_argument("--lockstep", action="store_true", help="the console waits, and this program waits for SLAM")
-    team = programs.add_parser("team", help="several robots: one map, tasks shared out and driven; in lockstep")
+    team = programs.add_parser("team", help="several robots: one map, tasks shared out and driven")
     team.add_argument(
         "--robot",
         action="append",
@@ -54,6 +54,7 @@ def parser() -> argparse.ArgumentParser:
     )
     team.add_argument("--arena", required=True, metavar="WORLD", help="whose targets are the tasks")
     team.add_argument("--objective", choices=[one.value for one in Objective], default=Objective.SUM.value)
+    team.add_argument("--lockstep", action="store_true", help="the console waits for each command")
     team.add_argument("--out", default=".", metavar="DIR", help="where map and mission.json go")
     team.add_argument("--url", default="ws://127.0.0.1:9090", metavar="URL")
     team.add_argument("--wait", type=float, default=10.0, metavar="S", help="how long to wait for the server")
@@ -122,6 +123,7 @@ def _team(options: argparse.Namespace) -> dict[str, Any]:
         targets_of(options.arena),
         Objective(options.objective),
         Path(options.out),
+        options.lockstep,
         options.wait,
         told,
     )

@@ -17,8 +17,9 @@ from simconsole.drivers.robots.navigation.mission import Target
 from simconsole.drivers.robots.navigation.navigator import Navigator
 from simconsole.drivers.robots.navigation.robot_shape import shape_of
 from simconsole.drivers.robots.nodes.fleet_program import Robot, run
+from simconsole.drivers.robots.nodes.slam_node import StampedPose
 from simconsole.profiles.files.vehicle_files import load_vehicle
-from simconsole.profiles.vehicle import TurtlebotProfile
+from simconsole.profiles.parts.turtlebot import TurtlebotProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.host.jit import compiled
 from simconsole.world.tools.ros_maps import write_grid
@@ -42,9 +43,10 @@ class RobotMission(msgspec.Struct, frozen=True, kw_only=True):
     """What one robot did."""
 
     name: str
-    planned_m: float  # of its tour
-    tour: tuple[str, ...]
+    planned_m: float  # of what the last sharing left to it
+    tour: tuple[str, ...]  # what it had gone to before that, and what was left to it
     visits: tuple[MissionVisit, ...]
+    failed_s: float | None = None
     moments: tuple[tuple[int, float, float, float], ...]  # where SLAM had it: ns, x and y in m of map, yaw in rad
 
 
@@ -54,7 +56,7 @@ class Methods(msgspec.Struct, frozen=True, kw_only=True):
     objective: str
     optimum_m: float
     rows: tuple[MethodRow, ...]
-    without_m: tuple[float, ...]  # the optimum where the robot of this number has failed
+    without_m: tuple[float, ...]  # the optimum where the robot of this number has failed; none for one alone
 
 
 class MissionLog(msgspec.Struct, frozen=True, kw_only=True):
@@ -62,7 +64,10 @@ class MissionLog(msgspec.Struct, frozen=True, kw_only=True):
 
     ended: str  # why
     explored_s: float | None
+    shared_s: float | None  # when the open targets were shared out last: again whenever a robot had failed
     objective: str
+    targets: tuple[str, ...]
+    sharing: tuple[str, ...]  # the robots of the first sharing, which `methods` are about
     robots: tuple[RobotMission, ...]
     methods: tuple[Methods, ...]
 
@@ -73,6 +78,7 @@ def drive_team(
     targets: Sequence[Target],
     objective: Objective,
     folder: Path,
+    lockstep: bool = True,
     patience_s: float = 10.0,
     told: Callable[[Team], None] = lambda team: None,
 ) -> MissionLog:
@@ -84,6 +90,7 @@ def drive_team(
         targets: the tasks.
         objective: what the allocation that is driven makes as small as possible.
         folder: where to write.
+        lockstep: the console waits for each command.
         patience_s: how long to try to connect.
         told: called again and again, with the team.
 
@@ -93,35 +100,43 @@ def drive_team(
     """
     navigators = [Navigator(shape_of(_robot(vehicle)), compiled) for _, vehicle, _ in robots]
     team = Team(navigators, targets, objective)
-    driven = run(url, [robot for _, _, robot in robots], team, patience_s=patience_s, told=told)
+    driven = run(url, [robot for _, _, robot in robots], team, lockstep=lockstep, patience_s=patience_s, told=told)
     folder.mkdir(parents=True, exist_ok=True)
     if driven.grid is not None:
         write_grid(driven.grid, folder, MAP)
-    shared = team.shared
-    tours = ((),) * len(robots) if shared is None else shared.allocation.tours
     log = MissionLog(
         ended=driven.ended,
         explored_s=team.explored_s,
+        shared_s=team.shares[-1].time_s if team.shares else None,
         objective=objective.value,
+        targets=tuple(target.name for target in targets),
+        sharing=tuple(robots[number][0] for shared in team.shares[:1] for number in shared.robots),
         robots=tuple(
-            RobotMission(
-                name=name,
-                planned_m=0.0 if shared is None else shared.problem.way(number, tours[number]),
-                tour=tuple(targets[task].name for task in tours[number]),
-                visits=tuple(
-                    MissionVisit(
-                        target=visit.name, reached=visit.reached, time_s=visit.time_s, recoveries=visit.recoveries
-                    )
-                    for visit in team.members[number].visits
-                ),
-                moments=tuple((moment.time_ns, *moment.pose) for moment in driven.moments[number]),
-            )
-            for number, (name, _, _) in enumerate(robots)
+            _mission(team, number, name, driven.moments[number]) for number, (name, _, _) in enumerate(robots)
         ),
-        methods=() if shared is None else tuple(methods(shared.problem, one) for one in Objective),
+        methods=tuple(methods(team.shares[0].problem, one) for one in Objective if team.shares),
     )
     (folder / MISSION).write_bytes(msgspec.json.encode(log))
     return log
+
+
+def _mission(team: Team, number: int, name: str, moments: Sequence[StampedPose]) -> RobotMission:
+    """Return what a robot did."""
+    member, last = team.members[number], team.shares[-1:]
+    visits = tuple(
+        MissionVisit(target=visit.name, reached=visit.reached, time_s=visit.time_s, recoveries=visit.recoveries)
+        for visit in member.visits
+    )
+    left = [team.targets[task].name for shared in last for task in shared.tour(number)]
+    before = [visit.target for visit in visits if visit.target not in left]
+    return RobotMission(
+        name=name,
+        planned_m=sum(shared.planned_m(number) for shared in last),
+        tour=(*before, *left),
+        visits=visits,
+        failed_s=member.failed_s,
+        moments=tuple((moment.time_ns, *moment.pose) for moment in moments),
+    )
 
 
 def _robot(name: str) -> TurtlebotProfile:
@@ -151,5 +166,7 @@ def methods(problem: Problem, objective: Objective) -> Methods:
         objective=objective.value,
         optimum_m=best.cost,
         rows=tuple(rows),
-        without_m=tuple(optimum(problem.without(robot), objective).cost for robot in range(problem.robots)),
+        without_m=tuple(
+            optimum(problem.without(robot), objective).cost for robot in range(problem.robots) if problem.robots > 1
+        ),
     )

@@ -15,7 +15,7 @@ from simconsole.profiles.bridge import BridgeProfile
 from simconsole.profiles.files.loader import load
 from simconsole.profiles.files.vehicle_files import load_vehicle
 from simconsole.profiles.files.world_files import load_world
-from simconsole.profiles.vehicle import TurtlebotProfile
+from simconsole.profiles.parts.turtlebot import TurtlebotProfile
 from simconsole.values.host.jit import plain
 from simconsole.values.kernels import put
 from simconsole.values.layout import read, write

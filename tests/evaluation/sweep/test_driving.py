@@ -5,8 +5,9 @@ import pytest
 
 from simconsole.evaluation.checks.scenario_check import check_scenario
 from simconsole.evaluation.checks.whole_drive import numbers
+from simconsole.evaluation.sweep.driving import drive_into, drive_task
 from simconsole.evaluation.sweep.plan import load_plan
-from simconsole.evaluation.sweep.task import drive_into, drive_task, from_bytes
+from simconsole.evaluation.sweep.task import from_bytes
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.values.errors import ProfileError
 from tests.evaluation.sweep.plans import grip, write_plan
