@@ -51,6 +51,7 @@ WORDS = {
     "can replay": ("--file", NOT_THERE, "--interface", "virtual", "--channel", "here"),
     "doctor": (),
     "list": ("worlds",),
+    "explain": ("steering.ratio",),
     **{f"new {kind}": ("evening", "--out", "{new}") for kind in NEW_KINDS},
     **{f"operate {act}": ("--url", "{url}") for act in parser().commands["operate"].commands},
 }

@@ -131,3 +131,7 @@ def test_advice_of_a_controller_is_taken_and_what_is_none_is_refused_in_words() 
     assert taken.kind == "command"
     assert told == ['{"kind": 2}']
     assert bridge.router.desk.lease.holder(0) is None, "it commands nothing"
+
+
+def test_advice_that_nobody_asked_for_is_let_pass() -> None:
+    assert Told().say({"data": "{}"}, topic=ADVICE).kind == "command"
