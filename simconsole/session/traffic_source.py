@@ -121,7 +121,10 @@ class TrafficSource:
         self._period_ticks = period_ticks
         self._owing = owing
         self._newest = self._of(0, traffic.road_users())
-        self._ahead = self._look(ego_box(platform.initial_vehicle, platform), 0, -1)
+        ego = ego_box(platform.initial_vehicle, platform)
+        self._ahead = self._look(ego, 0, -1)
+        # The search is compiled here, and not in the drive: a controller gives up a console that is silent for seconds.
+        self._crashes.step(platform.initial_vehicle, ego, self._newest.users[:0])
         self._fresh = True
         self._crash = NO_CRASH
         self._shown: list[ShowRoadUsers] = []

@@ -4,7 +4,7 @@ import os
 import re
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from enum import IntEnum
 from typing import Final, TextIO
 
@@ -49,7 +49,8 @@ def talking(wanted: Talk) -> Iterator[None]:
 def say(line: str) -> None:
     """Say a line on standard error, unless the command shall be quiet."""
     if _level is not Talk.QUIET:
-        print(f"simconsole: {line}", file=sys.stderr, flush=True)
+        with suppress(OSError):  # the terminal was closed
+            print(f"simconsole: {line}", file=sys.stderr, flush=True)
 
 
 def coloured(text: str, stream: TextIO) -> str:
