@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import msgspec
+import numpy as np
 
 from simconsole.devices.force_feedback.aligning import shares_by_speed
 from simconsole.drivers.own_controller import NO_OWN_CODE, OwnCode
@@ -39,7 +40,7 @@ from simconsole.session.preconditions import check_session, check_world
 from simconsole.session.provenance import package_versions, provenance_at_start, with_devices
 from simconsole.session.realtime import open_realtime
 from simconsole.session.seat import look_for_devices
-from simconsole.tick.advance import SETTINGS, Console, ConsoleState, advance
+from simconsole.tick.advance import SETTINGS, Console, ConsoleState, advance, advance_block
 from simconsole.tick.assembly import ResolvedSession, assemble
 from simconsole.tick.loop import come_to_rest, run
 from simconsole.values.errors import ProfileError, RecordingError
@@ -101,7 +102,7 @@ def drive(
     check_world(resolved)
     look_for_devices(resolved)
     console, state = assemble(resolved, compiled)
-    warm_up(console, state)
+    warm_up(console, state, awaited=resolved.session.mode.pacing == "lockstep")
     duration_s = resolved.session.scenario.duration_s
     ticks = ENDLESS_TICKS if duration_s is None else round(duration_s * console.tick_hz)
     with ExitStack() as stack:
@@ -151,9 +152,15 @@ def drive(
     )
 
 
-def warm_up(console: Console, state: ConsoleState) -> None:
-    """Run one tick and drop it: compiles or loads the kernels before any clock runs or client waits."""
+def warm_up(console: Console, state: ConsoleState, *, awaited: bool = False) -> None:
+    """Run one tick and drop it: compiles or loads the kernels before any clock runs or client waits.
+
+    Where a controller is `awaited`, also the kernel that makes several ticks at once: it would give up a console that
+    falls silent for the seconds that this takes.
+    """
     advance(state, TickInputs(NO_SAMPLE, NO_COMMAND, NO_EVENTS), console)
+    if awaited:
+        advance_block(state.vector, state.vector[np.newaxis].copy(), console)
 
 
 def _open(

@@ -13,8 +13,9 @@ from simconsole.recording.bundles.verification import verify
 from simconsole.session import lifecycle
 from simconsole.session.lifecycle import DriveResult, drive
 from simconsole.session.resolution import load_session, override, resolve
-from simconsole.tick.assembly import ResolvedSession
+from simconsole.tick.assembly import ResolvedSession, assemble
 from simconsole.values.errors import DeviceNotFound
+from simconsole.values.host.jit import plain
 from simconsole.values.state_vector import Snapshot
 
 
@@ -93,3 +94,13 @@ def test_a_missing_wheel_is_told_before_anything_is_compiled(
         drive(seated, tmp_path / "bundle")
     assert not (tmp_path / "bundle").exists()
     assert "SDL_VIDEODRIVER" not in os.environ, "the window that is opened later must be seen"
+
+
+def test_what_makes_many_ticks_is_ready_before_a_controller_is_waited_for(resolved: ResolvedSession) -> None:
+    console, state = assemble(resolved, plain)
+    made: list[int] = []
+    watched = console._replace(block=lambda previous, rows, *settings: made.append(len(rows)))
+    lifecycle.warm_up(watched, state)
+    assert made == [], "nobody waits: it is compiled once it is needed"
+    lifecycle.warm_up(watched, state, awaited=True)
+    assert made == [1]

@@ -121,17 +121,22 @@ class LockstepConnection:
             self.close()
 
     def flush(self, now_ns: int) -> None:
-        """Frame what waits in the session and send what the socket takes."""
+        """Frame what waits in the session and send what the socket takes: all of it, or until it takes no more."""
         if self.closed:
             return
         session = self.session
         self._collect()
-        if session is not None and self._web.state is State.OPEN:
+        if session is None or self._web.state is not State.OPEN:
+            self._send()
+            return
+        while True:
             if self._writer.is_inside or session.due_ns() is not None:
                 self._unsent += self._writer.batch(partial(session.next_text, now_ns), UNSENT_BYTES - len(self._unsent))
             if not self._unsent:
                 return
-        self._send()
+            self._send()
+            if self.closed or self._unsent:
+                return
 
     def check(self) -> None:
         """Ping a quiet client; close one whose machine is gone."""

@@ -13,7 +13,7 @@ import msgspec
 
 from simconsole.bridge.console.command_decoder import BALL_SPEED, REQUEST
 from simconsole.bridge.console.endpoint import ConsoleBridge
-from simconsole.bridge.console.plan_input import PLAN
+from simconsole.bridge.console.plan_input import ADVICE, PLAN
 from simconsole.bridge.protocol.access import Role
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.recording.imports.bag import Bag, BagMessage, BagTopic
@@ -72,7 +72,7 @@ class BagCommands:
         command_types = {
             name: topic.type
             for name, topic in router.topics.items()
-            if topic.command is not None and names[name] != PLAN  # which commands nothing
+            if topic.command is not None and names[name] not in (PLAN, ADVICE)  # which command nothing
         }
         standard = {names[name]: name for name in command_types}
         bag = Bag(choice.path, tuple(command_types.values()))

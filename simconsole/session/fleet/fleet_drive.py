@@ -67,8 +67,8 @@ def drive_fleet(
         check_session(part.session)
         check_world(part)
     assembled = [assemble(part, compiled) for part in parts]
-    for console, state in assembled:
-        warm_up(console, state)
+    for part, (console, state) in zip(parts, assembled, strict=True):
+        warm_up(console, state, awaited=part.session.mode.pacing == "lockstep")
     company, consoles = Company(*zip(*assembled, strict=True)), [console for console, _ in assembled]
     with ExitStack() as stack:
         interrupt = stack.enter_context(Interrupt())

@@ -79,8 +79,8 @@ def test_a_changed_constant_of_the_tyre_is_told_by_its_fields(
     monkeypatch.setattr(replaying, "compiled", jit.plain)
     monkeypatch.setattr(tyre, "PEAK_DEMAND", 1.01 * tyre.PEAK_DEMAND)
     assert main(["replay", str(folder), "--json"]) == 1
-    text, _, last = capsys.readouterr().out.rstrip().rpartition("\n")
-    found = json.loads(last)
+    said, text = capsys.readouterr()
+    found = json.loads(said)
     assert (found["equal"], found["ticks"], found["problems"]) == (False, 400, [])
     fields = {difference["field"]: difference for difference in found["differences"]}
     speed = fields["vehicle.vx_mps"]
