@@ -11,6 +11,7 @@ PAGES = sorted((ROOT / "docs" / "own").glob("*.md"))
 SAYS = {
     "cockpit": "out/lab",
     "controller": "every hash equal",
+    "keys": "Turning of the hand wheel per turning of the road wheels.",
     "message": "looks 0.25 rad to the left",
     "scenario": "brake",
     "session": "every hash equal",
