@@ -9,7 +9,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import pytest
 from websockets.sync.client import ClientConnection, connect
 
 from tests.paths import ROOT
@@ -40,7 +39,7 @@ def program(around: Mapping[str, str], *words: str) -> Iterator["subprocess.Pope
 
 
 def npm_packages(name: str, made: str, *packages: str) -> Path:
-    """The folder of npm packages (`NAME@VERSION`), fetched once into `name` of the cache; skip where npm cannot.
+    """The folder of npm packages (`NAME@VERSION`), fetched once into `name` of the cache.
 
     `made` is a file or folder in it that is there once it is whole.
     """
@@ -49,8 +48,7 @@ def npm_packages(name: str, made: str, *packages: str) -> Path:
         folder.parent.mkdir(parents=True, exist_ok=True)
         words = ["npm", "install", "--prefix", str(folder.parent), "--no-save", "--no-package-lock", "--ignore-scripts"]
         done = subprocess.run([*words, "--no-audit", "--no-fund", *packages], capture_output=True, text=True)
-        if done.returncode:
-            pytest.skip(f"npm cannot fetch {', '.join(packages)}: {done.stderr[-300:]}")
+        assert done.returncode == 0, f"npm cannot fetch {', '.join(packages)}: {done.stderr[-300:]}"
     return folder
 
 
