@@ -10,6 +10,7 @@ from typing import Annotated, Any
 
 import msgspec
 
+from simconsole.bridge.messages.cdr_writer import Writer, message_writer
 from simconsole.bridge.messages.conversion import normalise
 from simconsole.bridge.messages.definition import (
     FLOATS,
@@ -38,6 +39,7 @@ class Registry:
         self._definitions: dict[str, Definition] = {}
         self._structs: dict[str, Any] = {}
         self._full_names: dict[str, str] = {}
+        self._cdr_writers: dict[str, Writer] = {}
 
     def add_all(self, text: str) -> None:
         """Add every message of a text of `MSG: package/Name` parts.
@@ -130,6 +132,13 @@ class Registry:
         if full not in self._structs:
             self._generate(full, ())
         return self._structs[full]
+
+    def cdr_writer(self, name: str) -> Writer:
+        """Return what appends a typed message to a body of CDR. Raises BridgeError as `struct`."""
+        writer = self._cdr_writers.get(name)
+        if writer is None:
+            writer = self._cdr_writers[name] = message_writer(self.definition, name)
+        return writer
 
     def from_plain(self, name: str, value: Any, *, gaps: bool = True, now_ns: int = 0) -> Any:
         """Return the typed message of a decoded JSON value.

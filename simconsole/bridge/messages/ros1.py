@@ -3,7 +3,7 @@
 import struct
 from typing import TYPE_CHECKING, Any, Final
 
-from simconsole.bridge.messages.cdr import LETTERS
+from simconsole.bridge.messages.cdr_writer import LETTERS
 from simconsole.bridge.messages.definition import DURATION, HEADER, STRINGS, TIME, FieldType
 
 if TYPE_CHECKING:

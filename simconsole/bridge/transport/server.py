@@ -6,6 +6,7 @@ connection while that takes more, so that a client that stops reading stops nobo
 
 import asyncio
 import logging
+import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -190,11 +191,15 @@ class BridgeServer:
     def _join_ros2(self, loop: asyncio.AbstractEventLoop) -> None:
         from simconsole.bridge.ros2.node import Ros2Link
 
+        here = threading.get_ident()
+
         def wake() -> None:
             """Have the graph pumped in the loop's next turn, from whatever thread."""
             if not self._ros2_woken:
                 self._ros2_woken = True
-                loop.call_soon_threadsafe(self._pump_ros2)
+                # From its own thread, as for each message of a client, the loop need not be roused through its socket.
+                call = loop.call_soon if threading.get_ident() == here else loop.call_soon_threadsafe
+                call(self._pump_ros2)
 
         self._ros2 = Ros2Link(self.console, self._profile, wake)
 
