@@ -19,7 +19,8 @@ def triangulate(polygon: Array) -> Indices:
     one (Meisters 1975). If the outline crosses itself and no ear is left, the rest is drawn as a fan.
     """
     points: list[list[float]] = polygon.tolist()
-    left, x, y = list(range(len(points))), *polygon.T.copy()
+    left = list(range(len(points)))
+    x, y = polygon.T.copy()
     turn = 1.0 if _area2(polygon) >= 0.0 else -1.0
     triangles: list[tuple[int, int, int]] = []
     at = misses = 0
