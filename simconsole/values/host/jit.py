@@ -214,16 +214,16 @@ def _closed(function: Callable[..., Any], /, **names: Any) -> types.FunctionType
 class _Late(NamedTuple):
     """A function, and what gives the kernels that it uses: only who compiles it makes them, for that takes a while."""
 
-    twin: types.FunctionType
+    twin: Any  # a types.FunctionType, which type checkers bind as a method
     used: Callable[[], dict[str, Any]]
 
     def complete(self) -> types.FunctionType:
         """Return the function with all that it uses: globals, and enclosed variables (its closure)."""
-        used = self.used()
-        self.twin.__globals__.update(used)
-        for name, cell in zip(self.twin.__code__.co_freevars, self.twin.__closure__ or (), strict=True):
+        used, twin = self.used(), self.twin
+        twin.__globals__.update(used)
+        for name, cell in zip(twin.__code__.co_freevars, twin.__closure__ or (), strict=True):
             cell.cell_contents = used[name]
-        return self.twin
+        return twin  # type: ignore[no-any-return]
 
 
 def _cached(late: _Late, name: str, **options: bool) -> Any:
