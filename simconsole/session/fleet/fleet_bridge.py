@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 from simconsole.processes.lifetimes import Interrupt, end, tell_to_end
 from simconsole.session.autopilot_program import PROGRAM_END_S, new_nonce, own_token, start_autopilot
 from simconsole.session.fleet.members import is_commanded
-from simconsole.session.headless import LOOK_S, lockstep_link, surroundings
-from simconsole.session.lockstep import LockstepLink
+from simconsole.session.headless import LOOK_S, surroundings
+from simconsole.session.lockstep import AskingLink
 from simconsole.session.traffic_source import TrafficSource
 from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession
@@ -30,7 +30,7 @@ def links(
     interrupt: Interrupt,
     stack: ExitStack,
     on_bridge: Callable[[str], None],
-) -> list[LockstepLink | None]:
+) -> list[AskingLink | None]:
     """Open the server, start the autopilots, wait until somebody hears the odometry of each platform that is commanded.
 
     Args:
@@ -81,7 +81,9 @@ def links(
     _start_autopilots(parts, server.url, drive, programs)
     awaited = [port.console for port, part in zip(ports, parts, strict=True) if is_commanded(part.session)]
     _wait(server, awaited, programs, mode.wait_for_controller_s, interrupt)
-    return [lockstep_link(port, parts[0].session, interrupt) for port in ports]
+    return [
+        AskingLink(port, mode.control_period_ticks, mode.answer_timeout_s, lambda: interrupt.raised) for port in ports
+    ]
 
 
 def _start_autopilots(parts: Sequence[ResolvedSession], url: str, drive: str, programs: list[Popen[bytes]]) -> None:

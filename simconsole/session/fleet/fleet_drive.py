@@ -20,7 +20,7 @@ from simconsole.session.fleet.shared_sumo import SharedSumo, shared_sumo
 from simconsole.session.fleet.sight import Sight, sight_of
 from simconsole.session.headless import open_headless
 from simconsole.session.lifecycle import ENDLESS_TICKS, DriveResult, bundle_of, list_what_workers_wrote, warm_up
-from simconsole.session.lockstep import LockstepLink
+from simconsole.session.lockstep import AskingLink
 from simconsole.session.opened import Opened
 from simconsole.session.preconditions import check_session, check_world
 from simconsole.tick.advance import Console, ConsoleState
@@ -40,7 +40,7 @@ class _Member(NamedTuple):
     bundle: BundleWriter
     sight: Sight | None  # of the others; None for a robot, which is told of circles
     opened: Opened
-    link: LockstepLink | None  # None: no lockstep
+    link: AskingLink | None  # None: no lockstep
 
 
 def drive_fleet(
@@ -133,7 +133,7 @@ def _open(
     interrupt: Interrupt,
     stack: ExitStack,
     on_bridge: Callable[[str], None],
-) -> list[tuple[Opened, LockstepLink | None]]:
+) -> list[tuple[Opened, AskingLink | None]]:
     ports = links(parts, consoles, sights, bundles[0].folder, interrupt, stack, on_bridge)
     return [
         (open_headless(part, console, bundle.log, bundle.folder, interrupt, stack, link=port, others=sight), port)
@@ -162,17 +162,19 @@ def _run(
     ]
 
     has_robots = any(member.console.others for member in fleet)
+    links = [member.link for member in fleet if member.link is not None]
 
     def meet(states: Sequence[ConsoleState]) -> None:
-        """Tell each where the others are, all of the same moment."""
+        """Tell each where the others are, all of the same moment; meanwhile their controllers answer."""
         if has_robots:
             whereabouts.renew(states)
         company.renew(states)
         if sumo is not None:
             sumo.step(states[0].tick)
-        for member, state in zip(fleet, states, strict=True):
+        for number, (member, state) in enumerate(zip(fleet, states, strict=True)):
             if member.sight is not None:
-                member.sight.look(Snapshot(state.tick, tick_hz, state.vector))
+                member.sight.look(Snapshot(state.tick, tick_hz, state.vector), company, number)
+        AskingLink.hear_all(links)
 
     def finished(states: Sequence[ConsoleState]) -> bool:
         """Show the first platform as far as it is; return whether somebody or something ends the drive."""
