@@ -163,13 +163,13 @@ def test_a_waffle_sees_in_colour_what_its_depth_camera_measures() -> None:
         write(turned, LAYOUT.vehicle, snapshot.vehicle._replace(yaw_rad=yaw_rad))
         picture = decoded(draw(Snapshot(0, console.tick_hz, turned), NOBODY_AT_ALL)).astype(int)
         metres = measured.image(Pose(snapshot.vehicle.x_m, snapshot.vehicle.y_m, yaw_rad))
-        compared = 0
-        for at, dark in enumerate((picture.max(axis=2) < 120).T):
+        off = []
+        for at in range(depth.width_px):
             upwards = metres[::-1, at]
             rows = np.flatnonzero((upwards[1:] == upwards[:-1]) & np.isfinite(upwards[1:]))  # a wall stands upright
-            if not len(rows):
-                continue  # its wall is further than it measures
-            wall_ends = len(metres) - 1 - int(rows[0])
-            assert abs(int(np.flatnonzero(dark)[0]) - 1 - wall_ends) <= 2, (yaw_rad, at)
-            compared += 1
-        assert compared > 80, "in half of the columns or more the wall is near enough"
+            if len(rows):  # else the wall is further than it measures
+                differs = np.abs(picture[:, at] - picture[-1, at]).max(axis=1) > 12  # from the floor before the robot
+                off.append(int(np.flatnonzero(differs)[-1]) - (depth.height_px - 1 - int(rows[0])))
+        assert len(off) > 80, "in half of the columns or more"
+        assert max(map(abs, off)) <= 3, "blocks of JPEG are 8 pixels"
+        assert np.median(np.abs(off)) <= 1.0
