@@ -69,13 +69,11 @@ class SupervisorHandle:
         self.supervisor_restarts = 0
 
     def start(self) -> None:
-        """Start the supervisor, which starts the workers; nothing where there are none.
+        """Start the supervisor, which starts the workers.
 
         Raises:
             WorkerError: it cannot be started.
         """
-        if not self._spec.workers:
-            return
         self._process = _spawn("supervisor", self._spec, self._environment)
 
     def publish(self, snapshot: Snapshot) -> None:

@@ -87,7 +87,7 @@ def open_realtime(
     ecu = add_can_memory(resolved, console, folder)
     workers = worker_specs(own, console, folder, bundle, drive, has_traffic=traffic is not None)
     supervisor = SupervisorHandle(folder, workers)
-    programs = _started(supervisor, memory, stack)
+    programs = _started(supervisor if workers else None, memory, stack)
     opening.close()  # from here on the supervisor removes the folder, however the core ends
     address = _await_workers(own, folder, programs, (drive, token), supervisor, interrupt.check, traffic)
     with_window = resolved.session.outputs.hud is not None
@@ -141,13 +141,18 @@ def _alone(resolved: ResolvedSession) -> ResolvedSession:
     return replace(resolved, session=replace(session, outputs=outputs, environment=environment))
 
 
-def _started(supervisor: SupervisorHandle, memory: Memory, stack: ExitStack) -> "list[Popen[bytes]]":
-    """Start the supervisor; return the list of programs that end with the drive, before the workers do."""
+def _started(supervisor: SupervisorHandle | None, memory: Memory, stack: ExitStack) -> "list[Popen[bytes]]":
+    """Start the supervisor, None where nobody has to be looked after.
+
+    Return the list of programs that end with the drive, before the workers do.
+    """
     programs: list[Popen[bytes]] = []
     stack.callback(end, programs, PROGRAM_END_S)
-    stack.callback(supervisor.stop, lambda: memory.snapshots.is_empty)
+    if supervisor is not None:
+        stack.callback(supervisor.stop, lambda: memory.snapshots.is_empty)
     stack.callback(tell_to_end, programs)
-    supervisor.start()
+    if supervisor is not None:
+        supervisor.start()
     return programs
 
 
