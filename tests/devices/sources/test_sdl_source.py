@@ -4,12 +4,11 @@ import random
 from collections.abc import Callable
 from typing import Any
 
-import pygame
 import pytest
 from msgspec.structs import replace
 
 from simconsole.devices.calibration.calibrator import travel
-from simconsole.devices.calibration.cockpit_settings import CockpitSettings, button_bits, cockpit_settings
+from simconsole.devices.calibration.cockpit_settings import CockpitSettings, cockpit_settings
 from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
 from simconsole.devices.sources import sdl_runtime
 from simconsole.devices.sources import sdl_source as sdl_module
@@ -395,23 +394,3 @@ def test_failed_opening_leaves_sdl_closed(sdl: None, t500: CockpitProfile) -> No
         SdlSource(t500)
     assert not pygame.joystick.get_init()
     assert not pygame.display.get_init()
-
-
-def test_a_click_of_one_person_is_not_lost_to_whoever_looks_first(sdl: None, t500: CockpitProfile) -> None:
-    """SDL has one queue of events for all wheels in a process."""
-    g29 = load("devices", "g29", CockpitProfile)
-    cockpits = [VirtualCockpit(profile) for profile in (t500, g29)]
-    sources = [SdlSource(profile) for profile in (t500, g29)]
-    rest = [source.poll(1) for source in sources]
-    for person in (0, 1):
-        bit = 1 << min(button_bits((t500, g29)[person], "wheel").values())
-        cockpits[person].write(rest[person]._replace(wheel_buttons=float(bit)))
-        pygame.event.pump()  # SDL asks its devices
-        cockpits[person].write(rest[person])
-        seen = [int(source.poll(2).wheel_buttons) for source in sources]
-        assert seen[person] == bit, "pressed and released between two looks"
-        assert seen[1 - person] == 0
-        assert [int(source.poll(3).wheel_buttons) for source in sources] == [0, 0]
-    for source, cockpit in zip(sources, cockpits, strict=True):
-        source.close()
-        cockpit.close()
