@@ -13,7 +13,7 @@ from simconsole.processes.receipts import latencies_of
 from simconsole.processes.shared_memory import make_run_folder, remove_run_folder
 from simconsole.processes.supervisor import SupervisorHandle
 from simconsole.recording.bundles.log import LogWriter
-from simconsole.session.advice.advice_worker import share_advice
+from simconsole.session.advice.advice_worker import NewestAdvice, share_advice
 from simconsole.session.autopilot_program import PROGRAM_END_S, new_nonce, own_token, start_autopilot
 from simconsole.session.opened import Opened, commands_over_link, outputs_of, summary_of, traffic_of
 from simconsole.session.paced import (
@@ -84,7 +84,8 @@ def open_realtime(
     opening.close()  # from here on the supervisor removes the folder, however the core ends
     address = _await_workers(resolved, folder, programs, (drive, token), supervisor, interrupt.check, traffic)
     with_window = resolved.session.outputs.hud is not None
-    cockpit = open_cockpit(resolved, console, stack, memory.keys if with_window else None)
+    shown = None if advice is None else NewestAdvice(folder)
+    cockpit = open_cockpit(resolved, console, stack, memory.keys if with_window else None, shown)
     missing = stack.enter_context(realtime_hints())
     pace, latencies = Pacer(console.tick_hz), LatencyStatistics(time.monotonic_ns, console.tick_hz)
     components = _paced_components(
