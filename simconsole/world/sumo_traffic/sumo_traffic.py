@@ -154,7 +154,9 @@ class SumoTraffic:
         self._brake()
         self._sumo.simulationStep()
         seen: list[Found] = [self._sumo.vehicle.getContextSubscriptionResults(ego.name) for ego in self._egos]
-        others = {name: one[name] for name in sorted(set().union(*seen) - self._own) for one in seen if name in one}
+        others = {
+            name: one[name] for name in sorted(set[str]().union(*seen) - self._own) for one in seen if name in one
+        }
         rows = self._vehicles.rows(others)
         self._smooth.step(rows)
         self._users = []

@@ -39,8 +39,11 @@ def test_of_a_band_on_the_display_its_middle_is_seen_and_nothing_of_what_is_no_s
     asked = list[int]()
 
     def seen(advice: Advice) -> float:
-        look = with_display(lambda now_ns: (asked.append(now_ns), advice)[1])
-        found = look(told(lead_gap_m=12.0))
+        def newest(now_ns: int) -> Advice:
+            asked.append(now_ns)
+            return advice
+
+        found = with_display(newest)(told(lead_gap_m=12.0))
         assert found._replace(advised_mps=math.inf) == ahead_in(told(lead_gap_m=12.0))
         return found.advised_mps
 

@@ -29,7 +29,12 @@ class Types:
 
     def __getattr__(self, question: str) -> Any:
         place = ("getLength", "getVehicleClass", "getWidth", "getHeight").index(question)
-        return lambda name: (self.asked.append(question), TYPES[name][place])[1]
+
+        def answer(name: str) -> object:
+            self.asked.append(question)
+            return TYPES[name][place]
+
+        return answer
 
 
 def reader(numbers: Numbers | None = None) -> VehicleReader:
