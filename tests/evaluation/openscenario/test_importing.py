@@ -10,40 +10,17 @@ from scenariogeneration import xosc
 from simconsole.evaluation.openscenario.importing import imported
 from simconsole.values.errors import ProfileError
 from tests.evaluation.in_memory import drive_scenario
-from tests.evaluation.openscenario.files import NOT_UNDERSTOOD, UNDERSTOOD, all_files, brakes, by, written
+from tests.evaluation.openscenario.files import (
+    NAMED,
+    NOT_UNDERSTOOD,
+    UNDERSTOOD,
+    all_files,
+    brakes,
+    by,
+    mutated,
+    written,
+)
 from tests.samples import Sample
-
-WORDS: Final = ("", "nan", "inf", "-1e9", "1e300", "zwölf", "$speed", "$no", "${1+1}", "true", "0", "\x7f", "9" * 400)
-
-
-def mutated(content: bytes, rng: random.Random) -> bytes:
-    """Return a file after one thing that happens to files: an edit, a loss, a copy."""
-    text = content.decode()
-    how = rng.randrange(8)
-    tags = [match.span() for match in re.finditer(r"<[^>]+>", text)]
-    values = [match.span(1) for match in re.finditer(r'="([^"]*)"', text)]
-    if how == 0:  # a value that is another
-        start, end = rng.choice(values)
-        return (text[:start] + rng.choice(WORDS) + text[end:]).encode()
-    if how == 1:  # an element without its begin or end
-        start, end = rng.choice(tags)
-        return (text[:start] + text[end:]).encode()
-    if how == 2:  # an element twice
-        start, end = rng.choice([span for span in tags if text[span[1] - 2] == "/"])
-        return (text[:end] + text[start:end] + text[end:]).encode()
-    if how == 3:  # an element with another name
-        start, end = rng.choice([span for span in tags if text[span[1] - 2] == "/"])
-        return (text[:start] + re.sub(r"<\w+", "<Elsewhere", text[start:end]) + text[end:]).encode()
-    if how == 4:  # an attribute that is gone
-        start, end = rng.choice([match.span() for match in re.finditer(r' \w+="[^"]*"', text)])
-        return (text[:start] + text[end:]).encode()
-    if how == 5:  # a file that was cut off
-        return content[: rng.randrange(len(content))]
-    if how == 6:  # a byte that is another
-        at = rng.randrange(len(content))
-        return content[:at] + bytes([rng.randrange(256)]) + content[at + 1 :]
-    start, end = rng.choice([span for span in tags if text[span[1] - 2] == "/"])  # an element that is gone
-    return (text[:start] + text[end:]).encode()
 
 
 def refusal(content: bytes, partly: bool) -> str | None:
@@ -77,10 +54,6 @@ def test_what_is_not_understood_is_refused_by_its_name_and_line(name: str) -> No
     assert "\n" not in str(error.value)
     found = imported(make(), "made.xosc", partly=True)
     assert element in [one.element for one in found.left if one.changes]
-
-
-NAMED: Final = re.compile(r"made\.xosc: (line \d+: (<\w+>|not XML): |<\w+>: )")
-"""How a refusal begins: with the element and its line; of a file that is none or lacks a part, with what it is."""
 
 
 def test_mutations_are_imported_or_refused_with_the_element(sample: Sample) -> None:
