@@ -74,7 +74,7 @@ def cpu_s(process: "subprocess.Popen[bytes]", codes: Sequence[int] = (0,)) -> fl
     _, status, used = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode not in codes:
-        raise SystemExit(f"{process.args}: code {process.returncode}")
+        raise SystemExit(f"{process.args!r}: code {process.returncode}")
     return used.ru_utime + used.ru_stime
 
 
