@@ -18,7 +18,7 @@ NOBODY: Any = None
 
 
 def ball(**changes: dict[str, object]) -> ResolvedSession:
-    outputs = {"bridge": None, "hud": None, "scene": None, "report": False}
+    outputs: dict[str, object] = {"bridge": None, "hud": None, "scene": None, "report": False}
     session = override(load_session("roll_a_ball"), features={"autopilot": None}, outputs=outputs)
     return resolve(override(session, **changes))
 

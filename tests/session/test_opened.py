@@ -47,7 +47,7 @@ def test_commands_are_late_only_over_a_link_that_delays_or_loses_them() -> None:
 
 
 def test_road_users_are_told_of_ticks_and_closed_with_the_drive(monkeypatch: pytest.MonkeyPatch) -> None:
-    others = Others()
+    others: Any = Others()
     monkeypatch.setattr(opened, "open_traffic", lambda resolved, console, folder: others)
     with ExitStack() as stack:
         traffic = traffic_of(cast("Any", None), CONSOLE, stack)
