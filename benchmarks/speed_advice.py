@@ -1,14 +1,16 @@
 """Our speed advice beside SUMO's own device for it (device.glosa), on equal roads, demand and seeds.
 
-Run: python benchmarks/speed_advice.py [--seeds N] [--first SEED] [--vehicles N] [--minutes M]
+Run: python benchmarks/speed_advice.py [--seeds N] [--first SEED] [--vehicles N] [--minutes M] [--keep FILE]
 
 A grid of netgenerate's with fixed programs and 300 m between lights; every vehicle is equipped, or none. The device
 gets our range and lower bound of speed. Vehicles of ours drive no faster than the advisor says, and slow down as gently
 as it counts on; who prepares to stop rolls on at the lower bound. Told are means over all trips, and the paired
-differences of seeds with their 95 % confidence interval.
+differences of seeds with their 95 % confidence interval: of both against none, and of ours against the device's.
+With `--keep` a run that was ended goes on where it was, with the same words.
 """
 
 import argparse
+import json
 import statistics
 import subprocess
 import tempfile
@@ -37,6 +39,7 @@ _CITY: Final = (
 )  # fmt: skip
 _STEP_S: Final = 0.5
 _ANY_MPS: Final = 55.0
+_WHO: Final = ("none", "device", "ours")
 _T_95: Final = {4: 2.776, 9: 2.262, 19: 2.093, 29: 2.045}
 """Student's t, two-sided, by degrees of freedom."""
 
@@ -57,15 +60,31 @@ def main() -> None:
     parser.add_argument("--first", type=int, default=1, metavar="SEED", help="seeds from this one on")
     parser.add_argument("--vehicles", type=int, default=300, help="an hour")
     parser.add_argument("--minutes", type=float, default=20.0)
+    parser.add_argument("--keep", type=Path, help="a line for each seed that is done, JSON")
     given = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         net = _city(Path(folder))
-        found: dict[str, list[Trips]] = {"none": [], "device": [], "ours": []}
+        found: dict[str, list[Trips]] = {who: [] for who in _WHO}
+        done = _kept(given.keep)
         for seed in range(given.first, given.first + given.seeds):
-            routes = _demand(net, Path(folder), seed, given.vehicles, 60.0 * given.minutes)
-            for who, trips in found.items():
-                trips.append(_simulated(who, net, routes, seed, Path(folder)))
+            if seed not in done:
+                routes = _demand(net, Path(folder), seed, given.vehicles, 60.0 * given.minutes)
+                done[seed] = [_simulated(who, net, routes, seed, Path(folder)) for who in _WHO]
+                _keep(given.keep, seed, done[seed])
+            for who, trips in zip(_WHO, done[seed], strict=True):
+                found[who].append(trips)
     _tell(found)
+
+
+def _kept(path: Path | None) -> dict[int, list[Trips]]:
+    lines = path.read_text().splitlines() if path is not None and path.exists() else []
+    return {seed: [Trips(*one) for one in trips] for seed, trips in map(json.loads, lines)}
+
+
+def _keep(path: Path | None, seed: int, trips: list[Trips]) -> None:
+    if path is not None:
+        with path.open("a") as file:
+            file.write(json.dumps([seed, trips]) + "\n")
 
 
 def _city(folder: Path) -> Path:
@@ -168,10 +187,10 @@ def _tell(found: dict[str, list[Trips]]) -> None:
     for who, trips in found.items():
         means = [f"{name} {statistics.fmean(getattr(one, name) for one in trips):.2f}" for name in Trips._fields]
         print(f"  {who:6s}: {', '.join(means)}")
-    for other in ("none", "device"):
-        print(f"  ours less {other}, {seeds} seeds, 95 %:")
+    for one_of, other in (("device", "none"), ("ours", "none"), ("ours", "device")):
+        print(f"  {one_of} less {other}, {seeds} seeds, 95 %:")
         for name in Trips._fields:
-            pairs = zip(found["ours"], found[other], strict=True)
+            pairs = zip(found[one_of], found[other], strict=True)
             differences = [getattr(one, name) - getattr(two, name) for one, two in pairs]
             half = _T_95[seeds - 1] * statistics.stdev(differences) / seeds**0.5
             print(f"    {name} {statistics.fmean(differences):+.3f} +- {half:.3f}")

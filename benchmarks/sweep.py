@@ -1,10 +1,11 @@
-"""What a sweep costs beyond its drives: `python benchmarks/sweep.py [--drives N] [--rounds N] [--dask]`.
+"""What a sweep costs beyond its drives: `python benchmarks/sweep.py [--drives N] [--rounds N] [--workers N] [--dask]`.
 
-The same drives of 20 s in turns: by `simconsole sweep` in two processes of its own, and one after the other in a single
-process that does nothing else, each once with a tenth of the drives and once with all. Told is the processor time of
-whole process trees, starts included: what each further drive costs (the bar), what begins and ends once, and the whole.
-With `--dask` the sweep is driven by two workers of a scheduler that is started for it, their time included. The exit
-code is 1 where a further drive of a sweep costs more than the bar allows.
+The same drives of 20 s at the same time: by `simconsole sweep` in so many workers, and in as many processes of which
+each drives its share, one after the other, and nothing else. So what else the machine does slows both down alike. Once
+with a tenth of the drives and once with all. Told is the processor time of whole process trees, starts included: what
+each further drive costs (the bar), what begins and ends once, and the whole over that of a single process. With --dask
+the sweep is driven by the workers of a scheduler that is started for it, all their time included. The exit code is 1
+where a further drive of a sweep costs more than the bar allows.
 """
 
 import argparse
@@ -14,6 +15,7 @@ import socket
 import subprocess
 import sys
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from statistics import median
 from typing import NamedTuple
@@ -38,12 +40,12 @@ SCRIPT = {
         {"time_s": 60.0, "hand_wheel_deg": 90.0, "throttle": 0.4},
     ],
 }
-BARE = """\
+ALONE = """\
 import sys
 from pathlib import Path
 from simconsole.evaluation.sweep.plan import load_plan
 from simconsole.evaluation.sweep.driving import drive_task
-for task in load_plan(Path(sys.argv[1])).tasks:
+for task in load_plan(Path(sys.argv[1])).tasks[int(sys.argv[2])::int(sys.argv[3])]:
     assert drive_task(task).outcome == "driven"
 """
 
@@ -62,12 +64,17 @@ def cost(few: int, few_s: float, many: int, many_s: float) -> Cost:
     return Cost(few_s - few * drive_s, drive_s, many_s)
 
 
-def cpu_s(*words: str) -> float:
-    """Run a program of Python; return the processor time of it and all its children in s."""
-    process = subprocess.Popen([sys.executable, *words], stdout=subprocess.DEVNULL)
+def begun(*words: str) -> "subprocess.Popen[bytes]":
+    """Start a program of Python."""
+    return subprocess.Popen([sys.executable, *words], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+def cpu_s(process: "subprocess.Popen[bytes]", codes: Sequence[int] = (0,)) -> float:
+    """Wait for a program; return the processor time of it and all its children in s."""
     _, status, used = os.wait4(process.pid, 0)
-    if status:
-        raise SystemExit(f"{words}: code {os.waitstatus_to_exitcode(status)}")
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode not in codes:
+        raise SystemExit(f"{process.args!r}: code {process.returncode}")
     return used.ru_utime + used.ru_stime
 
 
@@ -79,21 +86,32 @@ def free_port() -> int:
     return port
 
 
-def on_dask(folder: Path, *words: str) -> float:
-    """Sweep on a scheduler and two workers, all of them started for it; return the processor time of all in s."""
-    url = f"tcp://127.0.0.1:{free_port()}"
-    workers = [["dask_worker", url, "--nthreads", "1", "--no-nanny", "--local-directory", str(folder)]] * 2
-    begun = []
-    for one in (["dask_scheduler", "--host", url], *workers):
-        program = [sys.executable, "-m", f"distributed.cli.{one[0]}", *one[1:], "--no-dashboard"]
-        begun.append(subprocess.Popen(program, stderr=subprocess.DEVNULL))
+def sweep_s(plan: Path, out: Path, workers: int) -> float:
+    """Sweep in so many processes; return the processor time of all in s."""
+    return cpu_s(begun("-m", "simconsole", "sweep", str(plan), "--jobs", str(workers), "--out", str(out)))
+
+
+def dask_s(plan: Path, out: Path, workers: int) -> float:
+    """Sweep on a scheduler and so many workers, all of them started for it; return the processor time of all in s."""
+    url, dask = f"tcp://127.0.0.1:{free_port()}", ("-m", "distributed.cli.dask_worker")
+    options = ("--nthreads", "1", "--no-nanny", "--no-dashboard", "--local-directory", str(out.parent))
+    cluster = [begun("-m", "distributed.cli.dask_scheduler", "--host", url, "--no-dashboard")]
+    cluster += [begun(*dask, url, *options) for _ in range(workers)]
     try:
-        spent = cpu_s(*words, "--engine", "dask", "--scheduler", url)
+        words = ("--engine", "dask", "--scheduler", url, "--out", str(out))
+        spent_s = cpu_s(begun("-m", "simconsole", "sweep", str(plan), *words))
     finally:
-        for process in begun:
+        for process in cluster:
             process.send_signal(signal.SIGINT)
-        used = [os.wait4(process.pid, 0)[2] for process in begun]
-    return spent + sum(each.ru_utime + each.ru_stime for each in used)
+        spent = [cpu_s(process, range(-64, 256)) for process in cluster]
+    return spent_s + sum(spent)
+
+
+def turn(plan: Path, out: Path, workers: int, dask: bool) -> tuple[float, float]:
+    """Drive a plan as a sweep, and at the same time in processes that only drive; return both times in s."""
+    alone = [begun("-c", ALONE, str(plan), str(start), str(workers)) for start in range(workers)]
+    swept_s = (dask_s if dask else sweep_s)(plan, out, workers)
+    return swept_s, sum(map(cpu_s, alone))
 
 
 def main() -> None:
@@ -101,22 +119,27 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--drives", type=int, default=200)
     parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--dask", action="store_true")
     options = parser.parse_args()
-    few, many = max(2, options.drives // 10), options.drives
-    swept, bare = [], []
+    drives, workers = options.drives, options.workers
+    few, ratios, wholes = max(2 * workers, drives // 10), [], []
     with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        plans = {count: write_plan(folder / str(count), count) for count in (few, many)}
+        plans = {count: write_plan(Path(name) / str(count), count) for count in (few, drives)}
         for number in range(options.rounds):
-            times = {count: turn(plan, plan.parent / f"out-{number}", options.dask) for count, plan in plans.items()}
-            swept.append(cost(few, times[few][0], many, times[many][0]))
-            bare.append(cost(few, times[few][1], many, times[many][1]))
-            print(told(swept[-1], bare[-1]), flush=True)
-    ratios = [one.drive_s / other.drive_s for one, other in zip(swept, bare, strict=True)]
-    wholes = [one.whole_s / other.whole_s for one, other in zip(swept, bare, strict=True)]
+            times = [turn(plan, plan.parent / f"out-{number}", workers, options.dask) for plan in plans.values()]
+            swept, alone = (cost(few, few_s, drives, many_s) for few_s, many_s in zip(*times, strict=True))
+            one_s = alone.once_s / workers + drives * alone.drive_s
+            ratios.append(swept.drive_s / alone.drive_s)
+            wholes.append(swept.whole_s / one_s)
+            print(
+                f"a drive {1e3 * swept.drive_s:.0f} ms over {1e3 * alone.drive_s:.0f} ms: {ratios[-1]:.3f}; once "
+                f"{swept.once_s:.1f} s over {alone.once_s / workers:.1f} s of one process; whole {swept.whole_s:.1f} s "
+                f"over {one_s:.1f} s: {wholes[-1]:.3f}",
+                flush=True,
+            )
     print(f"each further drive: median {median(ratios):.3f}, {min(ratios):.3f} to {max(ratios):.3f}")
-    print(f"{many} drives with their starts: median {median(wholes):.3f}, {min(wholes):.3f} to {max(wholes):.3f}")
+    print(f"{drives} drives with their starts: median {median(wholes):.3f}, {min(wholes):.3f} to {max(wholes):.3f}")
     if median(ratios) > BAR:
         raise SystemExit(f"above the bar of {BAR:g}")
 
@@ -130,21 +153,6 @@ def write_plan(folder: Path, drives: int) -> Path:
     plan = {"schema": 1, "sessions": ["session.yaml"], "duration_s": 20, "values": values}
     (folder / "plan.yaml").write_text(yaml.safe_dump(plan))
     return folder / "plan.yaml"
-
-
-def turn(plan: Path, out: Path, dask: bool) -> tuple[float, float]:
-    """Drive a plan as a sweep and in a single process; return the processor time of both in s."""
-    words = ("-m", "simconsole", "sweep", str(plan), *(() if dask else ("--jobs", "2")), "--out", str(out))
-    return on_dask(out.parent, *words) if dask else cpu_s(*words), cpu_s("-c", BARE, str(plan))
-
-
-def told(swept: Cost, bare: Cost) -> str:
-    """Return one round as a line."""
-    return (
-        f"once {swept.once_s:.1f} s and {bare.once_s:.1f} s; a drive {1e3 * swept.drive_s:.0f} ms over "
-        f"{1e3 * bare.drive_s:.0f} ms: {swept.drive_s / bare.drive_s:.3f}; whole {swept.whole_s:.1f} s over "
-        f"{bare.whole_s:.1f} s: {swept.whole_s / bare.whole_s:.3f}"
-    )
 
 
 if __name__ == "__main__":

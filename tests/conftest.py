@@ -17,11 +17,11 @@ import pytest
 
 from tests import long_run, memory
 from tests.account import Account
-from tests.drives.fixtures import demo, once, script, short
+from tests.drives.fixtures import checked, demo, once, script, short
 from tests.faults import figures
 from tests.samples import SAMPLED, draw_seed, measured, module_sample, sample
 
-__all__ = ["demo", "measured", "module_sample", "once", "sample", "script", "short"]
+__all__ = ["checked", "demo", "measured", "module_sample", "once", "sample", "script", "short"]
 
 account: Final = Account()
 peaks: Final[list[memory.Peak]] = []

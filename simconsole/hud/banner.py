@@ -185,7 +185,7 @@ def _trip(view: HudView, box: Box) -> list[DrawItem]:
     seconds = int(view.t_s)
     cells = (
         (view.say(TIME), f"{seconds // 60:02d}:{seconds % 60:02d}"),
-        (view.say(DISTANCE), f"{view.number(0.001 * view.distance_m, 2)} km"),
+        (view.say(DISTANCE), view.distance_text(2)),
     )
     items: list[DrawItem] = [Rect(box, PANEL, "trip", 0.12 * box.h)]
     for index, (name, text) in enumerate(cells):

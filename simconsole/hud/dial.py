@@ -32,7 +32,6 @@ INDICATOR_HZ: Final = 1.5
 """Direction indicators flash 90 times a minute (UN Regulation 48: 90 plus or minus 30)."""
 THOUSAND_RPM: Final = "x1000 rpm"
 NO_DATA: Final = "NO DATA"
-KMH: Final = "km/h"
 AUTO: Final = "AUTO"
 UP: Final = "UP"
 FLAT: Final = -0.78
@@ -40,9 +39,12 @@ FLAT: Final = -0.78
 
 
 def dial(view: HudView, box: Box) -> list[DrawItem]:
-    """Return ring, needle, speed, gear and, in the two upper corners, the turn indicators."""
+    """Return ring, needle, speed, gear and, in the two upper corners, the turn indicators; of a robot its speeds."""
     radius = min(0.5 * box.w, box.h / (1.0 - FLAT))
     cx, cy = box.cx, box.y + 0.5 * (box.h - (1.0 - FLAT) * radius) + radius
+    if view.settings.is_robot:
+        turn = Box(cx - 0.5 * radius, cy + 0.42 * radius, radius, 0.31 * radius)
+        return [*_face(cx, cy, radius), *_speed(view, cx, cy, radius), *turning(view, turn)]
     return [
         *_face(cx, cy, radius),
         *_band(view, cx, cy, radius),
@@ -186,8 +188,8 @@ def _speed(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]
         Text(
             cx,
             cy - 0.06 * radius,
-            f"{view.shown_kmh}",
-            cap_px=0.42 * radius,
+            view.speed_text,
+            cap_px=fit_cap_px(view.speed_text, 0.42 * radius, 1.5 * radius),
             colour=TEXT,
             role="speed",
             anchor="c",
@@ -196,7 +198,7 @@ def _speed(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]
         Text(
             cx,
             cy + 0.28 * radius,
-            view.say(KMH),
+            view.speed_unit,
             cap_px=0.07 * radius,
             colour=MUTED,
             role="speed.unit",
@@ -204,6 +206,14 @@ def _speed(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]
             arcmin=DRIVING_ARCMIN,
         ),
     ]
+
+
+def turning(view: HudView, box: Box) -> list[DrawItem]:
+    """Return how fast a robot turns, in the middle of a box."""
+    if view.stale:
+        return []
+    cap = fit_cap_px("+000 °/s", 0.4 * box.h, box.w)
+    return [Text(box.cx, box.cy, view.turn_text, cap_px=cap, colour=TEXT, role="turning", arcmin=DRIVING_ARCMIN)]
 
 
 def _turn(view: HudView, cx: float, cy: float, radius: float) -> list[DrawItem]:
@@ -276,7 +286,7 @@ def limit_sign(view: HudView, cx: float, cy: float, radius: float) -> list[DrawI
 
 def indicator_arrows(view: HudView, cx: float, y: float, apart: float, reach: float) -> list[DrawItem]:
     """Return the arrows that flash with the lamps outside: `apart` from `cx`, one or both."""
-    if view.stale or not lamps_on(view.t_s):
+    if view.stale or view.settings.is_robot or not lamps_on(view.t_s):
         return []
     both = view.hazard_lights > 0.0
     items: list[DrawItem] = []

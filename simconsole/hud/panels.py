@@ -85,11 +85,11 @@ def pedals(view: HudView, box: Box) -> list[DrawItem]:
         (CLUTCH, view.clutch, view.driver_clutch),
         (BRAKE, view.brake, view.driver_brake),
         (GAS, view.throttle, view.driver_throttle),
-    )
+    )[view.settings.is_robot :]  # which has no clutch
     widest = max((view.say(name) for name, _, _ in rows), key=lambda name: text_width_px(name, 1.0))
     inside = Box(box.x + 0.06 * box.w, box.y + 0.13 * box.h, 0.88 * box.w, 0.82 * box.h)
     for index, (name, value, foot) in enumerate(rows):
-        column = inside.column(index / 3.0, (index + 1) / 3.0)
+        column = inside.column(index / len(rows), (index + 1) / len(rows))
         cap = fit_cap_px(widest, 0.036 * column.h, 0.9 * column.w)
         items += _pedal(view, name, value, foot, cap, column)
     return items
@@ -306,15 +306,19 @@ class Lamp(NamedTuple):
 
 
 def lamps(view: HudView) -> list[Lamp]:
-    """Return the three devices, the wheel's motor, engine, hand brake, and CAN and bridge if any."""
+    """Return the three devices, the wheel's motor, engine, hand brake, and CAN and bridge if any.
+
+    A robot has neither gears nor engine nor hand brake.
+    """
+    robot = view.settings.is_robot
     shifter = (view.lever_label, "warn") if view.lever_label else _device(view.shifter_validity)
     states = [
         _device(view.wheel_validity),
         _device(view.pedals_validity),
-        shifter,
+        None if robot else shifter,
         (view.force, _FORCE_LEVELS[view.force]),
-        (RUNNING, "good") if view.engine_running else (OFF, "plain"),
-        _hand_brake(view),
+        None if robot else (RUNNING, "good") if view.engine_running else (OFF, "plain"),
+        None if robot else _hand_brake(view),
         None if view.can_up is None else ((ON, "good") if view.can_up else (DOWN, "warn")),
         None if view.link is None else (_link_words(view), _LINK_LEVELS.get(view.link, "good")),
     ]

@@ -19,7 +19,7 @@ from simconsole.hud.captions import (
     WAIT,
     YOU,
 )
-from simconsole.hud.dial import AUTO, KMH, NO_DATA, THOUSAND_RPM, UP
+from simconsole.hud.dial import AUTO, NO_DATA, THOUSAND_RPM, UP
 from simconsole.hud.frame_times import DATA_AGE, DRAWING, FRAME, NO_DATA_YET, RATE
 from simconsole.hud.key_names import BUTTON_WORDS, KEY_CODES, KEY_WORDS, WINDOW_WORDS, key_name
 from simconsole.hud.panels import (
@@ -49,7 +49,7 @@ from simconsole.hud.panels import (
 )
 from simconsole.hud.strip import RPM
 from simconsole.hud.turn_sign import KILOMETRES, METRES, NOW
-from simconsole.hud.view import FORCES, NOT_NOW, PAUSED, TWO_GEARS
+from simconsole.hud.view import FORCES, KMH, MPS, NOT_NOW, PAUSED, TWO_GEARS
 from simconsole.profiles.view import LanguageProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.labels import (
@@ -68,7 +68,7 @@ from simconsole.values.signals import Mode, Notice, Reason, Validity
 
 _OF_PARTS: Final = (
     *(MODE_UNKNOWN, TIME, DISTANCE),
-    *(AUTO, KMH, NO_DATA, THOUSAND_RPM, UP, RPM),
+    *(AUTO, KMH, MPS, NO_DATA, THOUSAND_RPM, UP, RPM),
     *(RATE, FRAME, DRAWING, DATA_AGE, NO_DATA_YET),
     *(STEERING, CLUTCH, BRAKE, GAS, LEFT, RIGHT, STRAIGHT),
     *(LINK_TITLE, LINK_ON, LIVE, SILENT, NONE, NO_COMMAND, AGE, TOO_OLD, CLIENTS, ONE_CLIENT),

@@ -3,7 +3,7 @@
 from typing import Final
 
 from simconsole.hud.banner import DISTANCE, TIME
-from simconsole.hud.dial import AUTO, KMH, NO_DATA, UP, indicator_arrows, is_over_red, limit_sign
+from simconsole.hud.dial import AUTO, NO_DATA, UP, indicator_arrows, is_over_red, limit_sign, turning
 from simconsole.hud.draw import CAUTION, LINE, MUTED, PANEL, TEXT, WARNING_LINE, Box, DrawItem, Rect, Text, fit_cap_px
 from simconsole.hud.panels import Lamp, lamp_cell, lamps, share
 from simconsole.hud.screen import DRIVING_ARCMIN, SECONDARY_ARCMIN, SPEED_ARCMIN
@@ -19,12 +19,15 @@ def strip(view: HudView, box: Box) -> list[DrawItem]:
     """Return speed, gear, engine speed, who steers, and what is not as it should be, side by side."""
     inside = box.inset(0.08 * box.h)
     sides = inside.column(0.52, 0.72)
-    return [
-        Rect(box, PANEL, "strip", 0.12 * box.h),
-        *_speed(view, inside.column(0.0, 0.165)),
+    driven = [
         *limit_sign(view, inside.x + 0.197 * inside.w, inside.y + 0.42 * inside.h, 0.36 * inside.h),
         *_gear(view, inside.column(0.23, 0.31)),
         *_engine(view, inside.column(0.33, 0.49)),
+    ]
+    return [
+        Rect(box, PANEL, "strip", 0.12 * box.h),
+        *_speed(view, inside.column(0.0, 0.165)),
+        *(turning(view, inside.column(0.23, 0.49)) if view.settings.is_robot else driven),
         *share(view, Box(sides.x, box.y, sides.w, box.h)),
         *_lamps(view, inside.column(0.74, 1.0)),
     ]
@@ -35,14 +38,14 @@ def _speed(view: HudView, box: Box) -> list[DrawItem]:
         text = view.say(NO_DATA)
         cap = fit_cap_px(text, 0.3 * box.h, box.w)
         return [Text(box.cx, box.cy, text, cap_px=cap, colour=MUTED, role="speed", arcmin=DRIVING_ARCMIN)]
-    cap = 0.50 * box.h
+    cap = fit_cap_px(view.speed_text, 0.50 * box.h, box.w)
     return [
         Text(
-            box.cx, box.y + 0.36 * box.h, f"{view.shown_kmh}", cap_px=cap, colour=TEXT, role="speed",
+            box.cx, box.y + 0.36 * box.h, view.speed_text, cap_px=cap, colour=TEXT, role="speed",
             arcmin=SPEED_ARCMIN,
         ),
         Text(
-            box.cx, box.y + 0.85 * box.h, view.say(KMH), cap_px=0.165 * box.h, colour=MUTED, role="speed.unit",
+            box.cx, box.y + 0.85 * box.h, view.speed_unit, cap_px=0.165 * box.h, colour=MUTED, role="speed.unit",
             arcmin=DRIVING_ARCMIN,
         ),
         *indicator_arrows(view, box.cx, box.y + 0.36 * box.h, 0.42 * box.w, 0.14 * box.h),
@@ -112,7 +115,7 @@ def _lamps(view: HudView, box: Box) -> list[DrawItem]:
         seconds = int(view.t_s)
         bad = [
             Lamp(TIME, f"{seconds // 60:02d}:{seconds % 60:02d}", "plain"),
-            Lamp(DISTANCE, f"{view.number(0.001 * view.distance_m, 1)} km", "plain"),
+            Lamp(DISTANCE, view.distance_text(1), "plain"),
         ]
     items: list[DrawItem] = []
     for index, lamp in enumerate(bad):

@@ -9,6 +9,7 @@ from simconsole.hud.key_names import help_rows, key_label
 from simconsole.hud.language import number, say
 from simconsole.profiles.control import ControlProfile
 from simconsole.profiles.device import CockpitProfile
+from simconsole.profiles.parts.turtlebot import TurtlebotProfile
 from simconsole.profiles.vehicle import CarProfile, VehicleProfile
 from simconsole.profiles.view import ENGLISH, HudProfile, LanguageProfile
 from simconsole.values.key_codes import Key
@@ -22,10 +23,13 @@ from simconsole.world.rules.speed_advice import NO_ADVICE, Advice
 
 STALE_S: Final = 0.5
 """Older snapshots are not shown: NO DATA."""
-SPEED_HYSTERESIS_KMH: Final = 0.5
+KMH: Final = "km/h"
+MPS: Final = "m/s"
+CMPS_PER_MPS: Final = 100.0
+SPEED_HYSTERESIS: Final = 0.5
 """The shown integer follows only when the speed has left it by this much more than rounding (rule 11)."""
-STANDING_KMH: Final = 0.1
-"""Up to this speed a car stands, for all to see: 0 is shown without hysteresis."""
+STANDING: Final = 0.1
+"""Up to this number a car stands, for all to see: 0 is shown without hysteresis."""
 SPEED_PERIOD_S: Final = 0.2
 """The speed's digits change at most this often (rule 11)."""
 FORCES: Final = ("none", "on", "eased", "limit", "lost")
@@ -54,12 +58,13 @@ class HudSettings(NamedTuple):
     help_rows: tuple[tuple[str, str], ...] = ()  # what each key or button does (`key_names.help_rows`)
     language: LanguageProfile = ENGLISH
     guidance: Guidance | None = None  # the route to follow; None: there is none
+    is_robot: bool = False  # slow, without engine, gears, lights and a road: m/s and m, and how fast it turns
 
 
 class HudMemory(NamedTuple):
     """What the display remembers from one picture to the next."""
 
-    shown_kmh: int = 0
+    shown_speed: int = 0  # in km/h, of a robot in cm/s
     shown_s: float = -1e9
     motor_seen: bool = False  # the wheel has had a motor in this drive
     clipped_s: float = -1e9  # when force was last cut off
@@ -78,6 +83,8 @@ class HudView(NamedTuple):
     t_s: float = 0.0
     stale: bool = False
     shown_kmh: int = 0
+    shown_cmps: int = 0  # speed of a robot, whose km/h are 0 or 1
+    turn_dps: float = 0.0  # how fast it turns, left-positive
     limit_kmh: int = 0  # speed limit here; 0: none
     ahead: Ahead | None = None  # what comes next on the route; None: no route, or beside it
     rpm: float = 0.0
@@ -126,16 +133,40 @@ class HudView(NamedTuple):
         """Return a number as the driver's language writes it."""
         return number(self.settings.language, value, digits)
 
+    @property
+    def speed_text(self) -> str:
+        """The speed without its unit."""
+        return self.number(0.01 * self.shown_cmps, 2) if self.settings.is_robot else f"{self.shown_kmh}"
 
-def shown_speed(speed_mps: float, t_s: float, memory: HudMemory) -> tuple[int, float]:
-    """Return the integer km/h to show and since when it is shown: hysteresis, and at most five changes a second."""
-    kmh = abs(speed_mps) * KMH_PER_MPS
+    @property
+    def speed_unit(self) -> str:
+        """The unit of the speed, as the driver's language has it."""
+        return self.say(MPS if self.settings.is_robot else KMH)
+
+    @property
+    def turn_text(self) -> str:
+        """How fast a robot turns, with its unit."""
+        return f"{self.turn_dps:+.0f} °/s" if round(self.turn_dps) else "0 °/s"
+
+    def distance_text(self, digits: int) -> str:
+        """Return how far the drive has gone, in km with so many digits; of a robot in m with one."""
+        if self.settings.is_robot:
+            return f"{self.number(self.distance_m, 1)} m"
+        return f"{self.number(0.001 * self.distance_m, digits)} km"
+
+
+def shown_speed(speed_mps: float, t_s: float, memory: HudMemory, per_mps: float = KMH_PER_MPS) -> tuple[int, float]:
+    """Return the whole number to show and since when it is shown: hysteresis, and at most five changes a second.
+
+    It counts km/h, unless a metre a second is another number (`per_mps`) of what is counted.
+    """
+    speed = abs(speed_mps) * per_mps
     if not 0.0 <= t_s - memory.shown_s < 1e8:  # the first picture, or a drive that started anew
-        return int(kmh + 0.5), t_s
-    steady = kmh > STANDING_KMH and abs(kmh - memory.shown_kmh) < 0.5 + SPEED_HYSTERESIS_KMH
+        return int(speed + 0.5), t_s
+    steady = speed > STANDING and abs(speed - memory.shown_speed) < 0.5 + SPEED_HYSTERESIS
     if steady or t_s - memory.shown_s < SPEED_PERIOD_S:
-        return memory.shown_kmh, memory.shown_s
-    return int(kmh + 0.5), t_s
+        return memory.shown_speed, memory.shown_s
+    return int(speed + 0.5), t_s
 
 
 def settings_of(
@@ -176,6 +207,7 @@ def settings_of(
         reset_button=button(Key.RESET, "reset"),
         help_rows=help_rows(cockpit, by_keyboard=by_keyboard, language=language),
         language=language,
+        is_robot=isinstance(vehicle, TurtlebotProfile),
     )
 
 
@@ -222,7 +254,8 @@ def view(
     """
     vehicle, command, driver, language = snapshot.vehicle, snapshot.command, snapshot.driver, settings.language
     arbitration = snapshot.arbitration
-    kmh, shown_s = shown_speed(vehicle.vx_mps, snapshot.t_s, memory)
+    per_mps = CMPS_PER_MPS if settings.is_robot else KMH_PER_MPS
+    speed, shown_s = shown_speed(vehicle.vx_mps, snapshot.t_s, memory, per_mps)
     force, motor_seen, clipped_s = force_label(snapshot, memory)
     stop_reason = _stop_reason(arbitration.mode, arbitration.reason, memory)
     next_turn, route_m = _guided(snapshot, memory, settings.guidance)
@@ -231,7 +264,9 @@ def view(
         settings=settings,
         t_s=snapshot.t_s,
         stale=age_s > STALE_S and not paused,
-        shown_kmh=kmh,
+        shown_kmh=round(abs(vehicle.vx_mps) * KMH_PER_MPS) if settings.is_robot else speed,
+        shown_cmps=speed if settings.is_robot else 0,
+        turn_dps=vehicle.yaw_rate_radps * DEG_PER_RAD,
         limit_kmh=_limit_kmh(snapshot, settings),
         ahead=next_turn,
         rpm=max(0.0, vehicle.engine_radps * RPM_PER_RADPS),
@@ -275,7 +310,7 @@ def view(
         link=link,
     )
     return shown, HudMemory(
-        shown_kmh=kmh,
+        shown_speed=speed,
         shown_s=shown_s,
         motor_seen=motor_seen,
         clipped_s=clipped_s,

@@ -53,6 +53,7 @@ def spawn(
     environment: Mapping[str, str] | None = None,
     stdout: int | None = None,
     stderr: int | None = None,
+    pass_fds: Sequence[int] = (),
 ) -> "subprocess.Popen[bytes]":
     """Start a Python program that ends with this process; it calls `follow_parent`.
 
@@ -62,6 +63,7 @@ def spawn(
         environment: in place of this process's own.
         stdout: where it may write, as subprocess takes it; None: nowhere.
         stderr: where it may complain, as subprocess takes it.
+        pass_fds: file descriptors that it inherits; none on Windows.
 
     Raises:
         OSError: it cannot be started.
@@ -78,6 +80,7 @@ def spawn(
         env={**(os.environ if environment is None else environment), "PYTHONPATH": path},
         # A terminal's Ctrl-C reaches the core only, which then ends what it started in order.
         process_group=0,
+        pass_fds=pass_fds,
         creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),
     )
     _write(process, told)

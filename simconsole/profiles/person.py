@@ -95,6 +95,9 @@ class RoadHabits(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Time gap that the person keeps to who drives ahead."""
     gap_m: Annotated[float, Meta(ge=1.0, le=10.0)] = 2.0
     """Distance that the person keeps to who stands ahead, and to a stop line."""
+    follows_advice: bool = True
+    """Whether the person drives as the display advises (`features.speed_advice` of a paced drive), where that is slower
+    than they would."""
     shift_down_rpm: Annotated[float, Meta(ge=900.0, le=3000.0)] = 1200.0
     """Engine speed below which the person shifts down along a route."""
     hurried_rpm: Annotated[float, Meta(ge=1500.0, le=7000.0)] = 3600.0

@@ -91,6 +91,12 @@ class PlatformSection(Section, frozen=True, kw_only=True):
     """Who sits in this platform; left out, `devices.driver` in the one of `scenario.seat`, and nobody in the others."""
     person: PersonPlan | None = None
     """What the platform's simulated person does; left out, what `devices.person` says."""
+    cockpit: ProfileName | None = None
+    """Wheel, pedals and shifter of this platform: a shipped cockpit, or a file in the session's folder; left out,
+    `devices.cockpit`."""
+    hud: HudProfile | None = None
+    """Instruments and window of who sits in this platform, where a clock paces the drive; left out, `outputs.hud` in
+    the one of `scenario.seat`, and none in the others."""
     autopilot: bool = True
     """Whether `features.autopilot`, where there is one, starts a program for it, too."""
 
@@ -109,8 +115,8 @@ class Scenario(Section, frozen=True, kw_only=True):
     faults: Faults = ()
     """What goes wrong on the way, each with its trigger; none if left out."""
     platforms: Annotated[tuple[PlatformSection, ...], Meta(max_length=16)] = ()
-    """Vehicles that drive together, with time that no clock paces; left out, there is one, the scenario's vehicle. Only
-    a session that is driven has several, not that of a scenario."""
+    """Vehicles that drive together; left out, there is one, the scenario's vehicle. Only a session that is driven has
+    several, not that of a scenario."""
     seat: str | None = None
     """The platform that `devices.driver`, `faults`, display and report belong to; without it the first."""
 

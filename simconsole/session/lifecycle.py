@@ -237,7 +237,7 @@ def new_bundle(
         source_sha256=sources_sha256(console),
         session_sha256=hashlib.sha256(text.encode()).hexdigest(),
     )
-    has_motor = console.force_feedback is not None
+    has_motor = console.force_feedback is not None and not console.platform.turns_in_place  # a robot has no torque
     shares = shares_by_speed(read(console.settings, SETTINGS.force)) if has_motor else ()
     provenance = provenance_at_start(resolved.session.title, given, shares)
     return BundleWriter(folder, header, {SESSION_FILE: text, **maps}, package_versions(), provenance)

@@ -1,10 +1,11 @@
 """The bridge on the core's own sockets in lockstep, as the drive loop sees it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Final, Protocol
 
 import numpy as np
 
+from simconsole.bridge.console.input_slots import Question
 from simconsole.values.kernels import Row
 from simconsole.values.latency import Hop
 from simconsole.values.signals import NEVER_TICKS, Event, EventInput, RemoteCommand
@@ -69,18 +70,26 @@ class LockstepLink:
 
     def publish(self, snapshot: Snapshot) -> None:
         """Publish; at the end of a control period, wait for the answer."""
+        if self._waits(snapshot) and not self._bridge.exchange(snapshot, self._timeout_s, self._stop):
+            self._miss()
+
+    def _waits(self, snapshot: Snapshot) -> bool:
+        """Return whether an answer to this snapshot is to be waited for; if none is, publish what is due."""
         if snapshot.tick % self._period_ticks:
-            return  # sockets are served at fixed ticks only: the drive must not depend on when bytes arrive
+            return False  # sockets are served at fixed ticks only: the drive must not depend on when bytes arrive
         silent = self._silent_at is not None and self._silent_at == self._sequence
         if silent or not self._bridge.clients:
             self._bridge.publish(snapshot)
-            return
+            return False
         self._silent_at = None
         self.exchanges += 1
-        if not self._bridge.exchange(snapshot, self._timeout_s, self._stop):
-            self.unanswered += 1
-            self._silent_at = self._sequence
-            self._raised = int(Event.NO_ANSWER)
+        return True
+
+    def _miss(self) -> None:
+        """Note that the answer has not come."""
+        self.unanswered += 1
+        self._silent_at = self._sequence
+        self._raised = int(Event.NO_ANSWER)
 
     def unseen(self, tick: int) -> int:
         """Return how many ticks, from `tick` on, do not end a control period."""
@@ -126,3 +135,47 @@ class LockstepLink:
         self._sequence = remote.sequence
         self._raised |= int(events.events)
         return remote
+
+
+class AskingServer(LockstepServer, Protocol):
+    """Likewise, of a bridge that several platforms share."""
+
+    def ask(self, snapshot: Snapshot) -> Question:
+        """Publish; return what answers this very snapshot."""
+
+    def hear(self, asked: Sequence[Question], timeout_s: float, stop: Callable[[], bool]) -> list[bool]:
+        """Wait for the answers to questions of any platforms; return of each whether it has come."""
+
+
+class AskingLink(LockstepLink):
+    """The bridge as one platform of several sees it: asks its controller, and waits with all others (`hear_all`)."""
+
+    def __init__(
+        self,
+        bridge: AskingServer,
+        period_ticks: int,
+        timeout_s: float,
+        stop: Callable[[], bool] = lambda: False,
+    ) -> None:
+        """Take the platform's port of the bridge; the rest as of `LockstepLink`."""
+        super().__init__(bridge, period_ticks, timeout_s, stop)
+        self._port = bridge
+        self._asked: Question | None = None
+
+    def publish(self, snapshot: Snapshot) -> None:
+        """Publish; at the end of a control period, with the question that `hear_all` waits for."""
+        if self._waits(snapshot):
+            self._asked = self._port.ask(snapshot)
+
+    @staticmethod
+    def hear_all(links: "Sequence[AskingLink]") -> None:
+        """Wait for the answers to all that has been asked on one bridge, in whatever order they come."""
+        asking = [(link, link._asked) for link in links if link._asked is not None]
+        if not asking:
+            return
+        first = asking[0][0]
+        heard = first._port.hear([asked for _, asked in asking], first._timeout_s, first._stop)
+        for (link, _), has_answered in zip(asking, heard, strict=True):
+            link._asked = None
+            if not has_answered:
+                link._miss()

@@ -227,8 +227,9 @@ def _share_signals(folder: Path, room: int) -> ShowRoadUsers:
 
 
 def keeps_plans(session: SessionProfile) -> bool:
-    """Return whether a drive keeps what controllers plan: where operators watch, and nobody waits for an answer."""
-    return session.mode.pacing == "realtime" and session.outputs.bridge is not None
+    """Return whether a drive keeps what controllers plan: where operators watch one platform, and nobody waits."""
+    watched = session.mode.pacing == "realtime" and session.outputs.bridge is not None
+    return watched and not session.scenario.platforms
 
 
 class PlanSource:
@@ -257,15 +258,14 @@ def share_plans(session: SessionProfile, folder: Path) -> PlanSource | None:
 
 
 def worker_specs(
-    resolved: ResolvedSession, console: Console, folder: Path, bundle: Path, drive: str
+    resolved: ResolvedSession, console: Console, folder: Path, bundle: Path, drive: str, *, has_traffic: bool
 ) -> list[WorkerSpec]:
     """Return the workers that the session's outputs name; writes what they need into the run folder.
 
-    `drive` is the nonce of the drive.
+    `drive` is the nonce of the drive; with `has_traffic` there are road users to be shown.
     """
     outputs, tick_hz, bridge = resolved.session.outputs, console.tick_hz, resolved.session.outputs.bridge
     has_bridge, has_can = outputs.bridge is not None, outputs.can is not None
-    has_traffic = resolved.session.environment.traffic is not None
     made = {
         SUMO: sumo_worker(resolved, tick_hz, ego_box(console.platform.initial_vehicle, console.platform)),
         "bridge": _bridge_worker(resolved, console, bundle, drive),

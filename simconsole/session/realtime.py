@@ -7,15 +7,17 @@ from pathlib import Path
 from subprocess import Popen
 from typing import Any
 
+import msgspec
+
 from simconsole.faults.schedule import with_faults
 from simconsole.processes.lifetimes import Interrupt, end, tell_to_end, undone
 from simconsole.processes.receipts import latencies_of
 from simconsole.processes.shared_memory import make_run_folder, remove_run_folder
 from simconsole.processes.supervisor import SupervisorHandle
 from simconsole.recording.bundles.log import LogWriter
-from simconsole.session.advice.advice_worker import share_advice
+from simconsole.session.advice.advice_worker import NewestAdvice, share_advice
 from simconsole.session.autopilot_program import PROGRAM_END_S, new_nonce, own_token, start_autopilot
-from simconsole.session.opened import Opened, commands_over_link, outputs_of, summary_of, traffic_of
+from simconsole.session.opened import Among, Opened, commands_over_link, outputs_of, summary_of, traffic_of
 from simconsole.session.paced import (
     PLAN_HZ,
     CommandPort,
@@ -52,10 +54,12 @@ def open_realtime(
     bundle: Path,
     interrupt: Interrupt,
     stack: ExitStack,
+    among: Among | None = None,
 ) -> Opened:
     """Open a paced drive: every output in a process of its own, their inputs through shared memory.
 
-    A raised `interrupt` ends all waiting.
+    A raised `interrupt` ends all waiting. `among` is what one of several platforms has with the others: for them the
+    session's server, and its traffic where there is any, are opened once.
 
     Raises:
         WorkerError: shared memory or the workers cannot be created.
@@ -64,51 +68,62 @@ def open_realtime(
         ProfileError: the bridge's own message types cannot be used.
         DeviceError: a device is missing.
     """
-    if resolved.session.outputs.bridge is not None:
-        check_address(resolved.session.outputs.bridge)
-    token, drive = own_token(resolved.session), new_nonce()
+    own = resolved if among is None else _alone(resolved)
+    if own.session.outputs.bridge is not None:
+        check_address(own.session.outputs.bridge)
+    token, drive = own_token(own.session), new_nonce()
     folder = make_run_folder()
     stack.callback(remove_run_folder, folder)
     opening = stack.enter_context(ExitStack())
     opening.enter_context(undone(lambda: remove_run_folder(folder)))
     memory = make_memory(folder, console)
-    traffic, unpushable = traffic_of(resolved, console, stack, folder), CollisionEnd(console.platform)
-    plans = share_plans(resolved.session, folder)
-    advice = share_advice(resolved.session, folder, console.tick_hz)
-    recorder = LogRecorder(log, memory.acts.take, traffic, plans, advice)
+    traffic = traffic_of(resolved, console, stack, folder) if among is None else among.others
+    unpushable, link = CollisionEnd(console.platform), None if among is None else among.link
+    plans = share_plans(own.session, folder)
+    advice = share_advice(own.session, folder, console.tick_hz)
+    recorder = LogRecorder(log, memory.acts.take if link is None else link.take_acts, traffic, plans, advice)
     if traffic is not None:
         share_road_users(traffic, folder, runs_signals(resolved))
     ecu = add_can_memory(resolved, console, folder)
-    supervisor = SupervisorHandle(folder, worker_specs(resolved, console, folder, bundle, drive))
-    programs = _started(supervisor, memory, stack)
+    workers = worker_specs(own, console, folder, bundle, drive, has_traffic=traffic is not None)
+    supervisor = SupervisorHandle(folder, workers)
+    programs = _started(supervisor if workers else None, memory, stack)
     opening.close()  # from here on the supervisor removes the folder, however the core ends
-    address = _await_workers(resolved, folder, programs, (drive, token), supervisor, interrupt.check, traffic)
+    address = _await_workers(own, folder, programs, (drive, token), supervisor, interrupt.check, traffic)
     with_window = resolved.session.outputs.hud is not None
-    cockpit = open_cockpit(resolved, console, stack, memory.keys if with_window else None)
-    missing = stack.enter_context(realtime_hints())
-    pace, latencies = Pacer(console.tick_hz), LatencyStatistics(time.monotonic_ns, console.tick_hz)
+    shown = None if advice is None else NewestAdvice(folder)
+    cockpit = open_cockpit(resolved, console, stack, memory.keys if with_window else None, shown)
+    missing = stack.enter_context(realtime_hints()) if among is None else among.not_granted
+    pace = Pacer(console.tick_hz) if among is None else among.pace
+    latencies = LatencyStatistics(time.monotonic_ns, console.tick_hz)
+    served = () if link is None else (link,)
     components = _paced_components(
         resolved,
         console,
         Components(
             devices=cockpit.devices,
-            commands=memory.commands,
+            commands=memory.commands if link is None else link,
             recorder=recorder,
-            outputs=(*cockpit.outputs, *outputs_of(traffic), *unpushable.outputs, memory.snapshots, supervisor),
+            outputs=(
+                *(*cockpit.outputs, *outputs_of(traffic), *unpushable.outputs),
+                *(memory.snapshots, *served, supervisor),
+            ),
             pace=pace,
             seat=cockpit.seat,
             ecu=ecu,
-            standby=(supervisor.publish, memory.commands.stand),
+            standby=(supervisor.publish, memory.commands.stand, *(each.stand for each in served)),
             road_users=traffic,
         ),
     )._replace(latencies=latencies)
 
     def summary() -> dict[str, Any]:
         latency = {**latencies.summary_us(), **latencies_of(folder, LATENCY)}
-        workers = {"worker_restarts": supervisor.counters(), **bridge_summary(folder), **can_summary(folder)}
-        own = {**recorder.acts_summary(), **summary_of(traffic), **unpushable.summary()}
-        own |= {"latency_us": latency, "not_granted": missing}
-        return {**pace.summary(), **workers, **own}
+        restarts = {"worker_restarts": supervisor.counters(), **bridge_summary(folder), **can_summary(folder)}
+        told = {**recorder.acts_summary(), **summary_of(traffic), **unpushable.summary()}
+        told |= {"latency_us": latency, "not_granted": missing}
+        for each in served:
+            told |= each.counters()
+        return {**pace.summary(), **restarts, **told}
 
     return Opened(
         components=components,
@@ -120,13 +135,25 @@ def open_realtime(
     )
 
 
-def _started(supervisor: SupervisorHandle, memory: Memory, stack: ExitStack) -> "list[Popen[bytes]]":
-    """Start the supervisor; return the list of programs that end with the drive, before the workers do."""
+def _alone(resolved: ResolvedSession) -> ResolvedSession:
+    """Return the session of one of several platforms without what is opened once for all: server and traffic."""
+    replace, session = msgspec.structs.replace, resolved.session
+    outputs, environment = replace(session.outputs, bridge=None), replace(session.environment, traffic=None)
+    return replace(resolved, session=replace(session, outputs=outputs, environment=environment))
+
+
+def _started(supervisor: SupervisorHandle | None, memory: Memory, stack: ExitStack) -> "list[Popen[bytes]]":
+    """Start the supervisor, None where nobody has to be looked after.
+
+    Return the list of programs that end with the drive, before the workers do.
+    """
     programs: list[Popen[bytes]] = []
     stack.callback(end, programs, PROGRAM_END_S)
-    stack.callback(supervisor.stop, lambda: memory.snapshots.is_empty)
+    if supervisor is not None:
+        stack.callback(supervisor.stop, lambda: memory.snapshots.is_empty)
     stack.callback(tell_to_end, programs)
-    supervisor.start()
+    if supervisor is not None:
+        supervisor.start()
     return programs
 
 

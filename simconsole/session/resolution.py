@@ -239,11 +239,16 @@ def _profiles_beside(session: SessionProfile, path: Path) -> SessionProfile:
 
 
 def _platform_beside(platform: PlatformSection, path: Path) -> PlatformSection:
-    """Return one of several platforms with the whole paths of its own vehicle and of its script or trace."""
-    vehicle, (kind, _, name) = platform.vehicle, (platform.driver or "").partition(":")
-    if vehicle is not None and vehicle.endswith(PROFILE_FILES):
-        beside = _beside(path, "platforms.vehicle", vehicle, vehicle)
-        platform = msgspec.structs.replace(platform, vehicle=str(beside))
+    """Return one of several platforms with the whole paths of the files that it names."""
+    kind, _, name = (platform.driver or "").partition(":")
+    for key in ("vehicle", "cockpit"):
+        named = getattr(platform, key)
+        if named is not None and named.endswith(PROFILE_FILES):
+            own: dict[str, object] = {key: str(_beside(path, f"platforms.{key}", named, named))}
+            platform = msgspec.structs.replace(platform, **own)
+    if platform.hud is not None:
+        shown = convert(_display_files_beside(platform.hud, path), HudProfile, str(path))
+        platform = msgspec.structs.replace(platform, hud=shown)
     if name:
         beside = _beside(path, "platforms.driver", platform.driver or "", name)
         platform = msgspec.structs.replace(platform, driver=f"{kind}:{beside}")

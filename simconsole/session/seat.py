@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from simconsole.devices.force_feedback.motor import HapticPort
     from simconsole.devices.sources.sdl_source import SdlSource
     from simconsole.drivers.simulated_person.guidance import Guidance
+    from simconsole.world.rules.speed_advice import Advice
 
 
 class OpenedCockpit(NamedTuple):
@@ -51,7 +52,11 @@ def look_for_devices(resolved: ResolvedSession) -> None:
 
 
 def open_cockpit(
-    resolved: ResolvedSession, console: Console, stack: ExitStack, keys: Callable[[], tuple[int, int]] | None = None
+    resolved: ResolvedSession,
+    console: Console,
+    stack: ExitStack,
+    keys: Callable[[], tuple[int, int]] | None = None,
+    advice: "Callable[[int], Advice] | None" = None,
 ) -> OpenedCockpit:
     """Open the cockpit that the session names; `stack` closes it.
 
@@ -60,6 +65,7 @@ def open_cockpit(
         console: the console it drives.
         stack: closes what is opened here.
         keys: (mask of held keys, age in ticks) from the window's process; None without a window.
+        advice: the display's speed advice at a time of the drive (ns), for a simulated person; None: it has none.
 
     Raises:
         ProfileError: the keyboard drives but there is no window.
@@ -69,7 +75,7 @@ def open_cockpit(
     if driver == "none":
         return OpenedCockpit(NobodySeated())
     if driver == "virtual":
-        return _open_person(resolved, console, stack)
+        return _open_person(resolved, console, stack, advice)
     if driver == "keyboard" and keys is None:
         raise ProfileError("devices.driver: value keyboard: needs a window, so not with --headless or hud: false")
     from simconsole.devices.calibration.cockpit_settings import cockpit_settings
@@ -138,15 +144,19 @@ def _with_motor(devices: "SdlSource", cockpit: CockpitProfile, force: ForceFeedb
     return OpenedCockpit(MotorisedSource(devices, motor, replugged, refusal is None), outputs=(motor,))
 
 
-def _open_person(resolved: ResolvedSession, console: Console, stack: ExitStack) -> OpenedCockpit:
+def _open_person(
+    resolved: ResolvedSession, console: Console, stack: ExitStack, advice: "Callable[[int], Advice] | None"
+) -> OpenedCockpit:
     from simconsole.devices.calibration.cockpit_settings import cockpit_settings
     from simconsole.devices.force_feedback.motor import MotorisedSource, SimulatedWheelPort, WheelMotor
     from simconsole.devices.force_feedback.simulated_wheel import SimulatedWheel, step_wheel
     from simconsole.devices.sources.sdl_source import SdlSource
     from simconsole.devices.sources.virtual_cockpit import VirtualCockpit
     from simconsole.drivers.cockpit.simulated_person import SimulatedPerson
+    from simconsole.drivers.simulated_person.situation import ahead_in, with_display
 
     plan, guidance = _plan(resolved, console.tick_hz)
+    look = ahead_in if advice is None else with_display(advice)
     cockpit = VirtualCockpit(resolved.cockpit)
     stack.callback(cockpit.close)
     devices = SdlSource(resolved.cockpit, cockpit.has)  # another person may sit at devices that are alike
@@ -154,12 +164,12 @@ def _open_person(resolved: ResolvedSession, console: Console, stack: ExitStack) 
     numbers, tick_hz = cockpit_settings(resolved.cockpit, console.tick_hz), console.tick_hz
     force = resolved.cockpit.force_feedback
     if force is None:
-        person = SimulatedPerson(plan, cockpit, numbers, tick_hz=tick_hz, guidance=guidance)
+        person = SimulatedPerson(plan, cockpit, numbers, tick_hz=tick_hz, guidance=guidance, look=look)
         return OpenedCockpit(
             devices, person, finished=lambda snapshot: person.finished, identities=devices.identities()
         )
     wheel = SimulatedWheel(force, resolved.cockpit.wheel.lock_to_lock_deg, tick_hz=tick_hz, step=compiled(step_wheel))
-    person = SimulatedPerson(plan, cockpit, numbers, tick_hz=tick_hz, wheel=wheel, guidance=guidance)
+    person = SimulatedPerson(plan, cockpit, numbers, tick_hz=tick_hz, wheel=wheel, guidance=guidance, look=look)
     motor = WheelMotor(SimulatedWheelPort(wheel), force, lambda snapshot: snapshot.t_s)
     stack.callback(motor.close)
     return OpenedCockpit(

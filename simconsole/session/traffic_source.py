@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, Protocol, runtime_checkable
 
 from simconsole.profiles.files.world_files import read_map
 from simconsole.profiles.traffic import TrafficProfile
@@ -15,7 +15,7 @@ from simconsole.values.host.jit import compiled
 from simconsole.values.latency import Hop
 from simconsole.values.platform import Platform
 from simconsole.values.signals import FAR, AheadInput, ImpactInput, VehicleState
-from simconsole.values.state_vector import Snapshot
+from simconsole.values.state_vector import LAYOUT, Snapshot
 from simconsole.values.trigonometry import direction
 from simconsole.world.kinds.worlds import open_map, open_world
 from simconsole.world.roads.road_map import Array
@@ -35,6 +35,8 @@ from simconsole.world.traffic.traffic import Traffic
 if TYPE_CHECKING:
     from simconsole.session.sumo.sumo_port import SumoPort
     from simconsole.world.sumo_traffic.sumo_traffic import SumoTraffic
+
+_LANE_AT: Final = LAYOUT.situation.at("lane")
 
 ShowRoadUsers = Callable[[RoadUsersAt], None]
 
@@ -150,13 +152,15 @@ class TrafficSource:
 
     def publish(self, snapshot: Snapshot) -> None:
         """Step, if a period has ended with this tick."""
-        if snapshot.tick % self._period_ticks:
-            return
-        vehicle = snapshot.vehicle
-        ego = ego_box(vehicle, self._platform)
+        if snapshot.tick % self._period_ticks == 0:
+            vehicle = snapshot.vehicle
+            self._look_around(snapshot, vehicle, ego_box(vehicle, self._platform))
+
+    def _look_around(self, snapshot: Snapshot, vehicle: VehicleState, ego: Box) -> None:
+        """Step, with the vehicle in this state and its footprint there."""
         self._newest = self._of(snapshot.tick, self._traffic.step(ego))
         self._fresh = True
-        self._ahead = self._look(ego, snapshot.tick, int(snapshot.situation.lane))
+        self._ahead = self._look(ego, snapshot.tick, int(snapshot.vector[_LANE_AT]))
         self._crash = self._crashes.step(vehicle, ego, self._newest.users)
         self.collisions += len(self._crash.new)
         for number, change_mps in self._crash.pushed:

@@ -72,6 +72,7 @@ def run_together(
     meet: Callable[[Sequence[ConsoleState]], None],
     period_ticks: int,
     finished: Callable[[Sequence[ConsoleState]], bool] = lambda states: False,
+    turn_ticks: int | None = None,
 ) -> list[ConsoleState]:
     """Drive all platforms until one drive ends or `finished` says so; return their last states.
 
@@ -79,13 +80,15 @@ def run_together(
         drives: of each platform, its `loop.steps`.
         states: of each before the first tick, all at the same tick.
         meet: told where all are after each period, before any goes on.
-        period_ticks: how many ticks one of them makes before the next one does, as far as it foresees them.
-        finished: asked after each period, so that all end at the same tick.
+        period_ticks: how many ticks lie between two meetings.
+        finished: asked after each turn, so that all end at the same tick.
+        turn_ticks: how many ticks one of them makes before the next one does, as far as it foresees them; without, a
+            period. A period is a whole number of turns.
     """
     now = list(states)
-    until = now[0].tick
+    until, turn = now[0].tick, turn_ticks or period_ticks
     while not finished(now):
-        until += period_ticks - until % period_ticks
+        until += turn - until % turn
         ended = False
         for number, drive in enumerate(drives):
             while now[number].tick < until:
@@ -96,5 +99,6 @@ def run_together(
                 now[number] = state
         if ended:
             break
-        meet(now)
+        if until % period_ticks == 0:
+            meet(now)
     return now

@@ -20,18 +20,22 @@ def triangulate(polygon: Array) -> Indices:
     """
     points: list[list[float]] = polygon.tolist()
     left = list(range(len(points)))
+    x, y = polygon.T.copy()
     turn = 1.0 if _area2(polygon) >= 0.0 else -1.0
     triangles: list[tuple[int, int, int]] = []
     at = misses = 0
     while len(left) > 3 and misses < len(left):
         at %= len(left)
         corner = (left[at - 1], left[at], left[(at + 1) % len(left)])
-        size = turn * _corner2(*(points[index] for index in corner))
+        a, b, c = (points[index] for index in corner)
+        size = turn * _corner2(a, b, c)
         flat = abs(size) <= FLAT_M2
-        if flat or (size > 0.0 and _is_empty(polygon, corner, left, turn)):
+        if flat or (size > 0.0 and _is_empty(a, b, c, x[: len(left)], y[: len(left)], turn)):
             if not flat:
                 triangles.append(corner)
             del left[at]
+            for each in (x, y):  # of the vertices that are left, in their order
+                each[at : len(left)] = each[at + 1 : len(left) + 1]
             misses = 0
         else:
             at, misses = at + 1, misses + 1
@@ -50,11 +54,19 @@ def _corner2(a: list[float], b: list[float], c: list[float]) -> float:
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
-def _is_empty(polygon: Array, corner: tuple[int, int, int], left: list[int], turn: float) -> bool:
-    """Return whether no other vertex lies inside the corner's triangle; on its border is not inside."""
-    others = polygon[[index for index in left if index not in corner]]
-    inside = np.ones(len(others), dtype=bool)
-    for start, end in zip(corner, (*corner[1:], corner[0]), strict=True):
-        edge, away = polygon[end] - polygon[start], others - polygon[start]
-        inside &= turn * (edge[0] * away[:, 1] - edge[1] * away[:, 0]) > FLAT_M2
+def _is_empty(a: list[float], b: list[float], c: list[float], x: Array, y: Array, turn: float) -> bool:
+    """Return whether no vertex of those left lies inside a triangle; on its border, as its corners, is not inside."""
+    inside = _left_of(a, b, x, y, turn)
+    if not inside.any():
+        return True
+    inside &= _left_of(b, c, x, y, turn)
+    if not inside.any():
+        return True
+    inside &= _left_of(c, a, x, y, turn)
     return not inside.any()
+
+
+def _left_of(start: list[float], end: list[float], x: Array, y: Array, turn: float) -> NDArray[np.bool_]:
+    """Return of each vertex whether it lies on the inner side of an edge, in the outline's turn."""
+    along_x, along_y = end[0] - start[0], end[1] - start[1]
+    return turn * (along_x * (y - start[1]) - along_y * (x - start[0])) > FLAT_M2

@@ -1,4 +1,4 @@
-"""A short drive and the demo, that many tests look at: made once in a test run, whichever of its processes asks."""
+"""What many tests look at, made once in a test run by whoever asks: a short drive, the demo, the check of scenarios."""
 
 import fcntl
 import json
@@ -11,6 +11,8 @@ from typing import Any, NamedTuple
 
 import pytest
 
+from simconsole.evaluation.checks.selection import selected
+from simconsole.profiles.files.loader import profiles_folder
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.reading import LogTable
 from tests.drives.console import results, simconsole
@@ -101,3 +103,26 @@ def demo(once: Once) -> Demo:
     out, err, cpu_s = json.loads((folder / "told.json").read_text())
     done = CompletedProcess(["simconsole", "demo"], 0, out, err)
     return Demo(folder / "bundle", done, results(done), cpu_s)
+
+
+class Checked(NamedTuple):
+    """The one check of all shipped scenarios of this test run."""
+
+    scenarios: dict[Path, dict[str, Any]]  # what `--json` says of each file
+    cpu_s: float  # of the command and all that it started
+
+
+@pytest.fixture(scope="session")
+def checked(once: Once) -> Checked:
+    """`simconsole check` of the folder of all shipped scenarios, once for all tests."""
+    scenarios = profiles_folder() / "scenarios"
+
+    def make(folder: Path) -> None:
+        before = os.times()
+        done = simconsole("check", scenarios, "--jobs", "2", "--json")
+        after = os.times()
+        (folder / "told.json").write_text(json.dumps([results(done), sum(after[2:4]) - sum(before[2:4])]))
+
+    told, cpu_s = json.loads((once("checked", make) / "told.json").read_text())
+    paths = [Path(name) for name in selected([str(scenarios)])]
+    return Checked(dict(zip(paths, told["scenarios"], strict=True)), cpu_s)

@@ -49,11 +49,12 @@ def begun(bundle: Path, folder: Path, ticks: int) -> Path:
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def whole(tmp_path_factory: pytest.TempPathFactory, module_sample: Sample) -> Path:
     """A drive of which a quarter is like the whole: by the autopilot, but for the beginning."""
     folder = tmp_path_factory.mktemp("whole")
     (folder / "session.yaml").write_text(SESSION)
-    done = simconsole("drive", folder / "session.yaml", "--for", 260, "--out", folder / "bundle", "--no-pack")
+    words = ("--for", module_sample.of(100, 260), "--out", folder / "bundle", "--no-pack")
+    done = simconsole("drive", folder / "session.yaml", *words)
     assert done.returncode == 0, done.stderr
     return folder / "bundle"
 

@@ -88,15 +88,16 @@ def test_behind_a_gate_that_lets_less_pass(sample: Sample, tmp_path: Path) -> No
         assert done.reached >= 0.999
 
 
-@pytest.mark.parametrize("tracker", ["pure_pursuit", "stanley"])
-def test_plain_trackers_drive_the_demos_course_behind_the_gate(tmp_path: Path, tracker: str) -> None:
+def test_plain_trackers_drive_the_demos_course_behind_the_gate(sample: Sample, tmp_path: Path) -> None:
     """Their links are late, too; with noise they may be stopped: `scripts/make_tracking.py` counts how often."""
-    done = tracked_on(
-        open_world(load_world("urban")).route, "urban", "hatchback", "{delay_ms: 40}", tmp_path, tracker=tracker
-    )
-    print(f"measured: {tracker}: {done}")
-    assert not done.stopped
-    assert done.max_cm <= 50.0
+    route = open_world(load_world("urban")).route
+    for tracker in ("stanley", "pure_pursuit")[: sample.of(1, 2)]:
+        folder = tmp_path / tracker
+        folder.mkdir()
+        done = tracked_on(route, "urban", "hatchback", "{delay_ms: 40}", folder, tracker=tracker)
+        print(f"measured: {tracker}: {done}")
+        assert not done.stopped
+        assert done.max_cm <= 50.0
 
 
 def test_resting_hands_that_a_fast_wheel_carries_along_take_nothing_over(tmp_path: Path) -> None:

@@ -1,7 +1,6 @@
 """Every scenario that is shipped passes, and all of them together are driven within three minutes of processor time."""
 
 import os
-import resource
 import subprocess
 import sys
 from importlib import import_module
@@ -9,7 +8,7 @@ from importlib import import_module
 import pytest
 
 from simconsole.evaluation.checks.selection import selected
-from tests.drives.console import results, simconsole
+from tests.drives.fixtures import Checked
 from tests.paths import ROOT
 
 FOLDER = ROOT / "profiles" / "scenarios"
@@ -23,15 +22,11 @@ def test_they_are_enough_and_of_every_kind() -> None:
         assert sum(f"/{kind}/" in name for name in names) >= 5, kind
 
 
-def test_they_pass_within_three_minutes_of_processor_time() -> None:
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    found = results(simconsole("check", FOLDER, "--jobs", "2", "--json"))
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    failed = {one["scenario"]: one["problems"] for one in found["scenarios"] if not one["passed"]}
+def test_they_pass_within_three_minutes_of_processor_time(checked: Checked) -> None:
+    failed = {path: one["problems"] for path, one in checked.scenarios.items() if not one["passed"]}
     assert failed == {}
-    cpu_s = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    print(f"measured: {len(found['scenarios'])} scenarios in {cpu_s:.0f} s of processor time")
-    assert cpu_s < CPU_S
+    print(f"measured: {len(checked.scenarios)} scenarios in {checked.cpu_s:.0f} s of processor time")
+    assert checked.cpu_s < CPU_S
 
 
 @pytest.mark.parametrize("name", ["roads/signals_autopilot", "traffic/stop_and_go", "by_hand/behind_a_lead"])

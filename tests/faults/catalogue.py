@@ -7,6 +7,7 @@ time. A test of a case says so with `@pytest.mark.fault("D01")`.
 
 import ast
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -132,6 +133,7 @@ CATALOGUE: Final = (
 )
 
 
+@cache
 def places(tests: Path = TESTS) -> dict[str, list[str]]:
     """Return the files (from the root of the project) that have a test of a case, by the case's id."""
     found: dict[str, list[str]] = {}

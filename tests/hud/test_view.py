@@ -78,7 +78,7 @@ def test_reversing_shows_no_minus() -> None:
 
 
 def test_a_drive_that_starts_anew_is_shown_at_once() -> None:
-    memory = HudMemory(shown_kmh=80, shown_s=500.0)
+    memory = HudMemory(shown_speed=80, shown_s=500.0)
     assert shown_speed(0.0, 1.0, memory) == (0, 1.0)
 
 

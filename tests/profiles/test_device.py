@@ -1,6 +1,5 @@
-"""Cockpit profiles and scripts: what is refused, and that every line of a shipped one says where it comes from."""
+"""Cockpit profiles: what is refused, and that every line of a shipped one says where it comes from."""
 
-from pathlib import Path
 from typing import Any
 
 import msgspec
@@ -10,7 +9,6 @@ from msgspec.structs import replace
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load, parse, profiles_folder, to_text
 from simconsole.profiles.parts.axes import SteeringAssistance
-from simconsole.profiles.parts.script import ScriptProfile
 from simconsole.values.errors import ProfileError
 
 COCKPITS = ["t500rs_th8rs", "t300rs_th8a", "g29", "gamepad", "keyboard"]
@@ -137,13 +135,6 @@ def test_more_meanings_than_a_state_vector_holds_are_refused(t500: CockpitProfil
         parse(to_text(plain), CockpitProfile, "cockpit.yaml")
     del plain["buttons"][names[0]]
     parse(to_text(plain), CockpitProfile, "cockpit.yaml")
-
-
-def test_script_whose_time_goes_back_is_refused(tmp_path: Path) -> None:
-    path = tmp_path / "script.yaml"
-    path.write_text("points:\n- {time_s: 1.0, throttle: 0}\n- {time_s: 0.5, throttle: 1}\n")
-    with pytest.raises(ProfileError, match=r"points\[1\].time_s 0.5 must be above 1.0"):
-        load("devices", str(path), ScriptProfile)
 
 
 def test_a_wheel_with_a_motor_is_not_assisted(t500: CockpitProfile) -> None:

@@ -9,6 +9,7 @@ import pytest
 from simconsole.evaluation.checks.scenario_check import check_scenario
 from simconsole.profiles.files import loader as profile_files
 from tests.drives.console import complaint, results, simconsole
+from tests.drives.fixtures import Checked
 
 SHIPPED = sorted(path.stem for path in (profile_files.profiles_folder() / "scenarios").glob("*.yaml"))
 QUICK = "roll_a_ball"
@@ -32,10 +33,10 @@ def test_the_five_scenarios_of_the_first_drive_are_shipped() -> None:
 
 
 @pytest.mark.parametrize("scenario", SHIPPED)
-def test_a_shipped_scenario_keeps_its_bounds_and_its_golden(scenario: str) -> None:
-    verdict = check_scenario(scenario)
-    assert verdict.passed, "\n".join(verdict.problems)
-    assert verdict.scenario == scenario
+def test_a_shipped_scenario_keeps_its_bounds_and_its_golden(scenario: str, checked: Checked) -> None:
+    verdict = checked.scenarios[profile_files.profiles_folder() / "scenarios" / f"{scenario}.yaml"]
+    assert verdict["passed"], "\n".join(verdict["problems"])
+    assert verdict["scenario"] == scenario
 
 
 def test_a_changed_control_value_is_named_with_tick_and_column(copied: Path) -> None:

@@ -8,9 +8,22 @@ from typing import Any
 import numpy as np
 import pytest
 
+from simconsole.profiles.bridge import CameraProfile
 from simconsole.profiles.files.world_files import load_world
+from simconsole.profiles.parts.turtlebot import TurtlebotProfile
+from simconsole.profiles.world import ArenaProfile
 from simconsole.recording.bundles.bundle import open_bundle
+from simconsole.session.camera_worker import drawn_camera
+from simconsole.session.resolution import load_session, resolve
+from simconsole.session.view.view_job import view_job
+from simconsole.tick.assembly import assemble
+from simconsole.values.host.jit import plain
+from simconsole.values.layout import write
+from simconsole.values.platform import Pose
+from simconsole.values.state_vector import LAYOUT, Snapshot
+from simconsole.world.arena.depth_camera import DepthCamera
 from simconsole.world.kinds.worlds import open_world
+from simconsole.world.traffic.road_users import NOBODY_AT_ALL
 from tests.drives.console import complaint, simconsole
 from tests.hud.gl.test_camera_picture import decoded
 from tests.interop.programs import Client, client, environment, program, wait_for_port
@@ -125,3 +138,38 @@ def test_where_nobody_could_draw_it_a_camera_is_refused(pacing: str, tmp_path: P
     path.write_text(path.read_text().replace("realtime", pacing))
     told = complaint(simconsole("drive", path, "--out", tmp_path / "bundle", "--for", 1))
     assert f"mode.pacing: value {pacing}: realtime, where outputs.bridge.camera is to be drawn" in told
+
+
+def test_a_waffle_sees_in_colour_what_its_depth_camera_measures() -> None:
+    """Where the floor ends below walls and pillars: by exact rays, and by the picture that EGL draws."""
+    resolved = resolve(load_session("turtlebot3_waffle"))
+    waffle, world = resolved.vehicle, resolved.world
+    assert isinstance(waffle, TurtlebotProfile)
+    assert waffle.depth_camera is not None
+    assert isinstance(world, ArenaProfile)
+    depth = waffle.depth_camera
+    colour = CameraProfile(
+        x_m=depth.x_m,
+        z_m=depth.z_m,
+        horizontal_fov_deg=depth.horizontal_fov_deg,
+        width_px=depth.width_px,
+        height_px=depth.height_px,
+    )
+    draw, measured = drawn_camera(view_job(resolved), colour), DepthCamera(depth, world, 0.2, plain)
+    console, state = assemble(resolved, plain)
+    snapshot = Snapshot(0, console.tick_hz, state.vector)
+    for yaw_rad in (snapshot.vehicle.yaw_rad, 0.0, 1.5):
+        turned = state.vector.copy()
+        write(turned, LAYOUT.vehicle, snapshot.vehicle._replace(yaw_rad=yaw_rad))
+        picture = decoded(draw(Snapshot(0, console.tick_hz, turned), NOBODY_AT_ALL)).astype(int)
+        metres = measured.image(Pose(snapshot.vehicle.x_m, snapshot.vehicle.y_m, yaw_rad))
+        off = []
+        for at in range(depth.width_px):
+            upwards = metres[::-1, at]
+            rows = np.flatnonzero((upwards[1:] == upwards[:-1]) & np.isfinite(upwards[1:]))  # a wall stands upright
+            if len(rows):  # else the wall is further than it measures
+                differs = np.abs(picture[:, at] - picture[-1, at]).max(axis=1) > 12  # from the floor before the robot
+                off.append(int(np.flatnonzero(differs)[-1]) - (depth.height_px - 1 - int(rows[0])))
+        assert len(off) > 80, "in half of the columns or more"
+        assert max(map(abs, off)) <= 3, "blocks of JPEG are 8 pixels"
+        assert np.median(np.abs(off)) <= 1.0

@@ -1,9 +1,10 @@
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
 
-from simconsole.session.lockstep import LockstepLink
+from simconsole.bridge.console.input_slots import BridgeInputs, Question
+from simconsole.session.lockstep import AskingLink, LockstepLink
 from simconsole.values.signals import NO_COMMAND, Event, EventInput, RemoteCommand
 from simconsole.values.state_vector import Snapshot
 
@@ -128,3 +129,44 @@ def test_a_missing_answer_does_not_hide_other_events(server: Server) -> None:
     drive(link, 1, 5)
     server.raised = int(Event.COMMANDER_LOST)
     assert int(link.take(6)[1].events) == Event.COMMANDER_LOST | Event.NO_ANSWER
+
+
+class AskedServer(Server):
+    """One platform's port of a bridge: its controller answers if `answers`, when all are heard."""
+
+    def __init__(self, answers: bool = True) -> None:
+        super().__init__(answers)
+        self.inputs = BridgeInputs()
+        self.heard: list[int] = []
+
+    def ask(self, snapshot: Snapshot) -> Question:
+        self.exchanged.append(snapshot.tick)
+        return Question(self.inputs, 0.0, 1 if self.answers else None)
+
+    def hear(self, asked: Sequence[Question], timeout_s: float, stop: Callable[[], bool]) -> list[bool]:
+        self.heard.append(len(asked))
+        return [question.stamp_ns is not None for question in asked]
+
+
+def test_several_platforms_ask_first_and_are_heard_together() -> None:
+    servers = [AskedServer(), AskedServer(answers=False)]
+    links = [AskingLink(server, PERIOD_TICKS, 1.0) for server in servers]
+    events: list[list[int]] = [[], []]
+    for first in range(1, 21, PERIOD_TICKS):
+        for link, seen in zip(links, events, strict=True):
+            seen += drive(link, first, first + PERIOD_TICKS - 1)
+        AskingLink.hear_all(links)
+    assert servers[0].heard == [2, 1, 1, 1], "the second one is not waited for until it has spoken"
+    assert servers[0].exchanged == [5, 10, 15, 20]
+    assert servers[1].exchanged == [5]
+    assert servers[1].published == [10, 15, 20]
+    assert [tick for tick, event in enumerate(events[1], start=1) if event] == [6]
+    assert events[1][5] == Event.NO_ANSWER
+    assert not any(events[0])
+    assert [link.unanswered for link in links] == [0, 1]
+
+
+def test_where_nobody_was_asked_nobody_is_heard() -> None:
+    server = AskedServer()
+    AskingLink.hear_all([AskingLink(server, PERIOD_TICKS, 1.0)])
+    assert server.heard == []

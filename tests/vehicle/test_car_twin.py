@@ -20,6 +20,7 @@ from simconsole.values.signals import VehicleCommand
 from simconsole.values.state_vector import LAYOUT, PLATFORM_AT
 from simconsole.vehicle.car.state import CarState
 from tests.bits import difference
+from tests.samples import Sample
 from tests.vehicle.driving import IDLE, Drive, platform
 
 SEED = 38
@@ -77,14 +78,15 @@ def rows(
         previous = row
 
 
-def test_plain_and_compiled_are_equal_to_the_last_bit(fresh: Any) -> None:
+def test_plain_and_compiled_are_equal_to_the_last_bit(fresh: Any, sample: Sample) -> None:
+    ticks = sample.of(4_000, 12_500)
     vehicle = platform(ground=Ground(0.9, 0.04, -0.02))
     met = dict.fromkeys(("still", "reverse", "stalled", "automatic", "fast", "sliding"), 0)
     for seed, speed in enumerate((0.0, 35.0, -8.0, 0.0), SEED):
         print(f"seed {seed}")
         pairs = zip(
-            rows(vehicle, vehicle.step, commands(seed, 12_500), 2, speed),  # four drives of 25,000 steps
-            rows(vehicle, fresh, commands(seed, 12_500), 2, speed),
+            rows(vehicle, vehicle.step, commands(seed, ticks), 2, speed),  # four drives, of two steps a tick
+            rows(vehicle, fresh, commands(seed, ticks), 2, speed),
             strict=True,
         )
         for tick, (slow, fast) in enumerate(pairs):

@@ -7,14 +7,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
-from simconsole.profiles.files.world_files import load_world
 from simconsole.profiles.world import OwnWorldProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.registered import Bounded
-from simconsole.world.contract import problems
 from simconsole.world.kinds.worlds import open_world
 from simconsole.world.registered import GROUP, OwnWorld, make_own
 from simconsole.world.world import World
@@ -22,6 +19,7 @@ from tests.drives.console import environment
 from tests.drives.console import simconsole as command
 from tests.installed import installed
 from tests.paths import ROOT
+from tests.world.made import world
 
 USED = """
 import sys
@@ -66,14 +64,6 @@ def own(made: Callable[[Any], Any]) -> OwnWorld:
     return OwnWorld({"radius_m": Bounded(30.0, 8.0, 500.0)}, made)
 
 
-def world(**changes: Any) -> World:
-    """A world of ours, with something changed."""
-    found = World("quick", open_world(load_world("arena")).route, lambda: open_world(load_world("arena")).drawing)
-    for name, value in changes.items():
-        setattr(found, name, value)
-    return found
-
-
 def fails(settings: object) -> World:
     raise KeyError("map")
 
@@ -106,44 +96,3 @@ def test_parameters_are_inside_their_bounds_and_equal_profiles_are_one_world() -
         open_world(profile())
     assert hash(profile(radius_m=9.0)) == hash(profile(radius_m=9.0))
     assert profile(radius_m=9.0) != profile(radius_m=8.0)
-
-
-def broken(key: str, value: Any) -> World:
-    found = world()
-    found.__dict__["drawing"] = found.drawing._replace(**{key: value})
-    return found
-
-
-def jumps() -> World:
-    found = world()
-    route = open_world(load_world("urban")).route
-    moved = route._cells[100]
-    cells = [*route._cells]
-    cells[100] = (moved[0] + 1.0, *moved[1:])
-    other = object.__new__(type(route))
-    other.__dict__ = {**route.__dict__, "_cells": cells}
-    found.route = other
-    return found
-
-
-@pytest.mark.parametrize(
-    ("made", "told"),
-    [
-        (world, ""),
-        (jumps, "route: at "),
-        (lambda: broken("path", np.zeros((1, 2))), "drawing: path: fewer than two points"),
-        (lambda: broken("edges", (np.zeros((3, 3)),)), "drawing: edges: a float64 array"),
-        (lambda: broken("edges", (np.full((3, 2), np.nan),)), "drawing: edges: a value is not finite"),
-    ],
-)
-def test_the_contract_names_what_is_wrong(made: Callable[[], World], told: str) -> None:
-    found = problems(made(), made())
-    assert [one[: len(told)] for one in found] == ([told] if told else [])
-
-
-def test_a_world_must_be_made_anew_and_alike() -> None:
-    one = world()
-    assert problems(one, one) == ["made a second time: the same object: it must be made anew"]
-    assert problems(one, broken("path", np.zeros((5, 2)))) == ["made a second time: another drawing"]
-    other = world(route=open_world(load_world("urban")).route)
-    assert problems(one, other) == ["made a second time: another route"]

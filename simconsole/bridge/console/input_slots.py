@@ -1,6 +1,7 @@
 """The newest accepted command and the edges since the last tick: latest wins, however many arrive between two ticks."""
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 from simconsole.values.signals import NEVER_TICKS, NO_COMMAND, Event, EventInput, RemoteCommand
 from simconsole.values.units import NS_PER_S
@@ -88,6 +89,28 @@ class BridgeInputs:
     def _announce(self) -> None:
         if self._on_command is not None:
             self._on_command(self.command, self.receipt_ns)
+
+
+class Question(NamedTuple):
+    """Odometry that has gone out, and what answers it: a newer command with its stamp, or without any."""
+
+    inputs: BridgeInputs
+    sequence: float
+    """Of the newest command before."""
+    stamp_ns: int | None
+    """Of the odometry; None: none has gone out, and no answer is waited for."""
+
+    @property
+    def is_answered(self) -> bool:
+        """Whether the answer has come, or none is waited for."""
+        if self.stamp_ns is None:
+            return True
+        return self.inputs.command.sequence != self.sequence and self.inputs.stamp_ns in (self.stamp_ns, None)
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether there is nothing more to wait for: an answer is here, or the commander is gone."""
+        return self.is_answered or self.inputs.command.sequence == self.inputs.lost_at
 
 
 def with_age(command: RemoteCommand, receipt_ns: int | None, now_ns: int, tick_hz: int) -> RemoteCommand:

@@ -4,6 +4,7 @@ import logging
 import socket
 import ssl
 import time
+from collections.abc import Callable
 from functools import partial
 from typing import Final, Protocol
 
@@ -45,8 +46,11 @@ class ConnectionOwner(Protocol):
     def places(self) -> Places:
         """What room there is."""
 
-    def connected(self, peer: str, admission: Admission) -> ClientSession:
-        """Add a client whose handshake is done."""
+    def connected(self, peer: str, admission: Admission, wake: Callable[[], None]) -> ClientSession:
+        """Add a client whose handshake is done; `wake` is called when there is something to send to it."""
+
+    def has_something(self, connection: "LockstepConnection") -> None:
+        """Note that there is something to send on a connection."""
 
     def received(self, session: ClientSession, text: bytes) -> None:
         """Apply a message of a client, `Binary` if it was not text."""
@@ -78,6 +82,11 @@ class LockstepConnection:
     def is_open(self) -> bool:
         """Whether messages can pass."""
         return not self.closed and self._web.state is State.OPEN
+
+    @property
+    def waits_to_send(self) -> bool:
+        """Whether there is anything to send, now or when its time comes."""
+        return bool(self._unsent) or (self.session is not None and self.session.due_ns() is not None)
 
     @property
     def waits_to_write(self) -> bool:
@@ -180,7 +189,7 @@ class LockstepConnection:
             return
         self._web.send_response(self._web.accept(request))
         if self._web.state is State.OPEN:
-            self.session = self._owner.connected(self.peer, decision)
+            self.session = self._owner.connected(self.peer, decision, partial(self._owner.has_something, self))
             self._limit_messages(self.session)
 
     def _take(self, opcode: int, data: bytes, fin: bool, session: ClientSession) -> None:

@@ -1,9 +1,10 @@
 """One of several platforms on the rosbridge server that they share in lockstep."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Self
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.bridge.console.input_slots import Question
 from simconsole.bridge.console.surroundings import Surroundings
 from simconsole.bridge.transport.lockstep_server import LockstepBridge, acts_of, in_lockstep, listeners
 from simconsole.profiles.bridge import BridgeProfile
@@ -42,6 +43,14 @@ class LockstepPort:
             ProfileError: as `ConsoleBridge`.
         """
         return cls(bridge, ConsoleBridge(in_lockstep(profile, odometry_hz), around=around, beside=bridge.console))
+
+    def ask(self, snapshot: Snapshot) -> Question:
+        """Publish; return what answers this very snapshot, as `LockstepBridge.ask`."""
+        return self._bridge.ask(snapshot, self.console)
+
+    def hear(self, asked: Sequence[Question], timeout_s: float, stop: Callable[[], bool]) -> list[bool]:
+        """Wait for the answers to questions of any platforms, as `LockstepBridge.hear`."""
+        return self._bridge.hear(asked, timeout_s, stop)
 
     def exchange(self, snapshot: Snapshot, timeout_s: float, stop: Callable[[], bool]) -> bool:
         """Publish, then wait for the command that answers this very snapshot, as `LockstepBridge.exchange`."""

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Final, Self
 import msgspec
 
 from simconsole.bridge.console.endpoint import ConsoleBridge
+from simconsole.bridge.console.input_slots import Question
 from simconsole.bridge.console.surroundings import NOWHERE, Surroundings
 from simconsole.bridge.console.topics import ODOMETRY
 from simconsole.bridge.messages import Registry
@@ -111,6 +112,8 @@ class LockstepBridge:
         self._next_check_s = 0.0
         self._connections: dict[LockstepConnection, float] = {}
         """Each with when it was accepted, in s."""
+        self._sending: dict[LockstepConnection, None] = {}
+        """Those that have something to send, now or when its time comes, in the order in which it came."""
         self._listener = listen(profile.host, profile.port)
         self._selector = selectors.DefaultSelector()
         self._selector.register(self._listener, selectors.EVENT_READ, None)
@@ -179,6 +182,35 @@ class LockstepBridge:
         self._pump_ros2()
         self._flush()
 
+    def ask(self, snapshot: Snapshot, of: ConsoleBridge | None = None) -> Question:
+        """Send a snapshot, odometry in any case; return what answers it, for `hear`. `of` as of `exchange`."""
+        console = of or self.console
+        self._now_ns = snapshot.t_ns
+        console.inputs.tick = snapshot.tick
+        self._record()
+        sequence = console.inputs.command.sequence
+        question = Question(console.inputs, sequence, console.publish(snapshot, self._now_ns, odometry=True))
+        self._pump_ros2()
+        self._flush()
+        return question
+
+    def hear(
+        self, asked: Sequence[Question], timeout_s: float = 2.0, stop: Callable[[], bool] = lambda: False
+    ) -> list[bool]:
+        """Wait for the answers to questions, in whatever order they come; return of each whether it has one.
+
+        None is waited for longer than `timeout_s` of wall time or until `stop`, nor of a commander who is gone while no
+        other has spoken.
+        """
+        deadline = time.monotonic() + timeout_s
+        awaited = [question for question in asked if not question.is_settled]
+        if not awaited:
+            self._serve(0.0)
+        while awaited and (left_s := deadline - time.monotonic()) > 0.0 and not stop() and self.clients:
+            self._serve(min(left_s, _CHECK_S))
+            awaited = [question for question in awaited if not question.is_settled]
+        return [question.is_answered for question in asked]
+
     def exchange(
         self,
         snapshot: Snapshot,
@@ -197,26 +229,7 @@ class LockstepBridge:
             False when no answer came within `timeout_s` of wall time or until `stop`, or the commander is gone and no
             other has spoken.
         """
-        console = of or self.console
-        inputs = console.inputs
-        self._now_ns = snapshot.t_ns
-        inputs.tick = snapshot.tick
-        self._record()
-        asked_ns = console.publish(snapshot, self._now_ns, odometry=True)
-        self._pump_ros2()
-        self._flush()
-        if asked_ns is None:
-            self._serve(0.0)
-            return True
-        before = inputs.command.sequence
-        deadline = time.monotonic() + timeout_s
-        while True:
-            if inputs.command.sequence != before and inputs.stamp_ns in (asked_ns, None):
-                return True
-            left_s = deadline - time.monotonic()
-            if left_s <= 0.0 or stop() or inputs.command.sequence == inputs.lost_at or not self.clients:
-                return False
-            self._serve(min(left_s, _CHECK_S))
+        return self.hear((self.ask(snapshot, of),), timeout_s, stop)[0]
 
     def counts(self) -> dict[str, int]:
         """Return how many messages went to and from all clients."""
@@ -262,12 +275,16 @@ class LockstepBridge:
         sessions = [connection.session for connection in self._connections]
         return places((session for session in sessions if session is not None), self._profile.limits)
 
-    def connected(self, peer: str, admission: Admission) -> ClientSession:
+    def connected(self, peer: str, admission: Admission, wake: Callable[[], None]) -> ClientSession:
         """Add a client (`ConnectionOwner`)."""
         _logger.info("%s connected", peer)
-        session = self.console.router.connect(peer, dialect=admission.dialect, role=admission.role)
+        session = self.console.router.connect(peer, wake, dialect=admission.dialect, role=admission.role)
         session.has_token = admission.has_token
         return session
+
+    def has_something(self, connection: LockstepConnection) -> None:
+        """Note that there is something to send on a connection (`ConnectionOwner`)."""
+        self._sending[connection] = None
 
     def received(self, session: ClientSession, text: bytes) -> None:
         """Apply a text of a client (`ConnectionOwner`)."""
@@ -286,10 +303,8 @@ class LockstepBridge:
             if mask & selectors.EVENT_READ:
                 connection.read()
             self._send_waiting(connection)
-        if len(self._connections) > 1:  # a message that one client published may wait for another client
-            for connection in list(self._connections):
-                if connection.session is not None and connection.session.due_ns() is not None:
-                    self._send_waiting(connection)
+        for connection in list(self._sending):  # a message that one client published may wait for another client
+            self._send_waiting(connection)
 
     def _record(self) -> None:
         if self._recorder is not None:
@@ -351,12 +366,14 @@ class LockstepBridge:
         checking = now_s >= self._next_check_s
         if checking:
             self._next_check_s = now_s + _CHECK_S
-        for connection in list(self._connections):
-            if checking:
+            for connection in list(self._connections):
                 connection.check()
+                self._send_waiting(connection)
+        for connection in list(self._sending):
             self._send_waiting(connection)
 
     def _remove(self, connection: LockstepConnection) -> None:
+        self._sending.pop(connection, None)
         if self._connections.pop(connection, None) is None:
             return
         self._selector.unregister(connection.socket)
@@ -375,3 +392,5 @@ class LockstepBridge:
         if connection.selected != wanted:
             connection.selected = wanted
             self._selector.modify(connection.socket, wanted, connection)
+        if not connection.waits_to_send:
+            self._sending.pop(connection, None)

@@ -135,7 +135,7 @@ class Drive:
     def metrics(self) -> dict[str, Any]:
         """What the report says, as plain values with the unit in every key; None where the drive has no such part."""
         faults = [fault_label(fault) for fault in self.session.session.scenario.faults]
-        return metrics(self._drive, self._route, self._track, faults, self._changes)
+        return metrics(table.read_at_once(self._recording, self.ticks), self._route, faults=faults)
 
     @property
     def events(self) -> list[DriveEvent]:

@@ -118,8 +118,13 @@ def _scenario(commands: Any) -> None:
     scenario.add_argument(
         "--parameter", action="append", default=[], metavar="NAME=VALUE", help="of those that the file declares"
     )
+    scenario.add_argument(
+        "--values", metavar="FILE", help="of parameters, .xosc: a scenario for each set of them, and their sweep's plan"
+    )
     scenario.add_argument("--partly", action="store_true", help="leave out what is not understood, and list it")
-    scenario.add_argument("--out", metavar="FILE", help="the scenario (default: its name here, .yaml)")
+    scenario.add_argument(
+        "--out", metavar="FILE", help="the scenario (default: its name here, .yaml); with --values a folder"
+    )
 
 
 def _turtlebot(commands: Any) -> None:

@@ -113,6 +113,7 @@ class SdlSource:
         self._count = 0
         self._pygame = sdl_runtime.acquire()
         self._open = True
+        _OPEN.append(self)
         try:
             self._start()
         except BaseException:
@@ -183,6 +184,7 @@ class SdlSource:
         """Release the devices. Twice is harmless."""
         if self._open:
             self._open = False
+            _OPEN.remove(self)
             self._bound.clear()
             sdl_runtime.release()
 
@@ -211,7 +213,7 @@ class SdlSource:
             self._count, arrived = count, True
             present = {entry.instance_id for entry, _ in self._connected()}
             self._bound = {k: bound for k, bound in self._bound.items() if bound.instance_id in present}
-        for bound in self._bound.values():
+        for bound in (bound for source in _OPEN for bound in source._bound.values()):
             for instance_id, button in presses:
                 if instance_id == bound.instance_id:
                     bound.clicks |= 1 << button
@@ -279,6 +281,10 @@ class SdlSource:
                 f"{self._cockpit.title}: pedals.throttle: value {share:.0%} pressed at the start: below "
                 f"{INVERTED_SHARE:.0%}; foot off, or rest_raw and full_raw of the profile are swapped"
             )
+
+
+_OPEN: Final[list[SdlSource]] = []
+"""All that are open in this process, each a person's: SDL has one queue, and who empties it tells all of presses."""
 
 
 def _fits(entry: JoystickInfo, binding: RoleBinding | OtherDevice) -> bool:

@@ -21,6 +21,7 @@ from simconsole.profiles.person import PersonPlan
 from simconsole.values.draws import Channel, bounded, even, wandering
 from simconsole.values.units import MPS_PER_KMH, RAD_PER_DEG
 from simconsole.world.route import Route
+from simconsole.world.rules.speed_advice import DOWN_MPS2
 
 FORESIGHT_S: Final = 0.7
 """The feet act for where the car will be when they have acted."""
@@ -109,21 +110,25 @@ class AlongRoute:
         return wanted_rad + self._road.hand_deviation_deg * RAD_PER_DEG * tremble
 
     def pace(self, view: View) -> Pace:
-        """Return what the feet should bring about: the least that the road, who is ahead and signals allow."""
+        """Return what the feet should bring about: the least of the road, advice, who is ahead and signals."""
         s_m, speed_mps = self._s_m or 0.0, view.speed_mps
         planned_mps, planned_mps2 = self._speeds.at(s_m + FORESIGHT_S * speed_mps)
         cruise_mps = self._plan.cruise_kmh * MPS_PER_KMH
         if planned_mps > cruise_mps:
             planned_mps, planned_mps2 = cruise_mps, 0.0
         on_road = planned_mps2 + SPEED_GAIN_1PS * (planned_mps - speed_mps)
-        among_others = self._allowed_mps2(view)
+        seen = self._known_ahead(view.distance_m)
+        if self._road.follows_advice and seen.advised_mps < planned_mps:
+            planned_mps = seen.advised_mps
+            on_road = min(on_road, max(SPEED_GAIN_1PS * (planned_mps - speed_mps), -DOWN_MPS2))
+        among_others = self._allowed_mps2(seen, speed_mps)
         if on_road <= among_others:
             return self._feet(speed_mps, on_road, planned_mps)
         return self._feet(speed_mps, among_others, speed_mps + among_others / SPEED_GAIN_1PS)
 
-    def _allowed_mps2(self, view: View) -> float:
+    def _allowed_mps2(self, seen: Situation, speed_mps: float) -> float:
         """Return the acceleration that vehicles ahead, signals and those with right of way allow."""
-        seen, road, speed_mps = self._known_ahead(view.distance_m), self._road, view.speed_mps
+        road = self._road
         allowed = min(
             following_mps2(seen.lead_gap_m, seen.lead_speed_mps, speed_mps, self._following),
             stopping_mps2(seen.yield_m, speed_mps, road),

@@ -1,4 +1,4 @@
-"""What a person sees of other road users and signals ahead on their way. Pure."""
+"""What a person sees of other road users and signals ahead on their way, and on the display. Pure."""
 
 import math
 from collections.abc import Callable
@@ -6,6 +6,8 @@ from enum import IntEnum
 from typing import Final, NamedTuple
 
 from simconsole.values.state_vector import Snapshot
+from simconsole.values.units import NS_PER_S
+from simconsole.world.rules.speed_advice import Advice, Advised
 
 
 class Light(IntEnum):
@@ -25,6 +27,7 @@ class Situation(NamedTuple):
     light: float = float(Light.NONE)
     line_m: float = math.inf  # to the line at which the light is obeyed
     yield_m: float = math.inf  # to where to wait for somebody with right of way; infinite while nobody has it
+    advised_mps: float = math.inf  # the middle of the band that the display advises; infinite while it has none
 
 
 NOTHING_AHEAD: Final = Situation()
@@ -52,6 +55,18 @@ def ahead_in(snapshot: Snapshot) -> Situation:
         line_m=seen.signal_distance_m if is_ahead else math.inf,
         yield_m=seen.yield_m if _PASSED_M < seen.yield_m < _FAR_M else math.inf,
     )
+
+
+def with_display(newest: Callable[[int], Advice]) -> Look:
+    """Return what sees the way ahead and the display; `newest` tells its speed advice at a time of the drive (ns)."""
+
+    def look(snapshot: Snapshot) -> Situation:
+        advice = newest(round(snapshot.t_s * NS_PER_S))
+        if advice.kind is not Advised.SPEED:
+            return ahead_in(snapshot)
+        return ahead_in(snapshot)._replace(advised_mps=0.5 * (advice.low_mps + advice.high_mps))
+
+    return look
 
 
 def _metres(value: float) -> float:

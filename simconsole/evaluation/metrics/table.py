@@ -2,7 +2,7 @@
 
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,6 +14,9 @@ from simconsole.values.errors import RecordingError
 Array = NDArray[np.float64]
 Read = Callable[[Sequence[str]], Iterator[Array]]
 """Yields these columns of a drive in blocks [n, columns], in the order of the ticks; each call begins anew."""
+
+IN_MEMORY: Final = 1 << 23
+"""Values of a drive, 64 MiB of them, up to which `read_at_once` does."""
 
 
 class Drive(NamedTuple):
@@ -161,3 +164,16 @@ def recorded_drive(recording: Recording, told: Callable[[float], object] = lambd
         names=frozenset(recording.header.columns),
         advice=advice,
     )
+
+
+def read_at_once(recording: Recording, ticks: int) -> Drive:
+    """Return a recorded drive of so many ticks: in memory if it is short, for what reads it many times, as metrics do.
+
+    Raises:
+        RecordingError: as `recorded_drive`.
+    """
+    if ticks * len(recording.header.columns) > IN_MEMORY:
+        return recorded_drive(recording)
+    held = recording.table()  # one pass: `recorded_drive` makes one more, to count the ticks
+    drive = drive_of(held.vectors[:ticks], held.columns, held.tick_hz, int(held.ticks[0]) if len(held.ticks) else 1)
+    return drive._replace(advice=tuple(recorded_advice(recording)))

@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping
 from typing import Any, Final, NamedTuple
 
+from simconsole.evaluation.openscenario.distributions import VALUES
 from simconsole.evaluation.openscenario.entities import Entity, actor, entities
 from simconsole.evaluation.openscenario.reading import DECLARATIONS, MOST_TOLD, Left, Source, parts_of
 from simconsole.evaluation.openscenario.storyboard import Told, storyboard
@@ -21,7 +22,6 @@ _NOTED: Final = {
     "RoadNetwork": "no road map is read: environment.world of the session",
 }
 _NO_CATALOGUES: Final = "CatalogLocations"
-_VALUES: Final = "ParameterValueDistribution"
 
 
 class Imported(NamedTuple):
@@ -62,10 +62,8 @@ def imported(
     """
     source = Source(origin)
     parts = parts_of(content, origin)
-    if _VALUES in parts:
-        raise source.error(
-            parts[_VALUES], "values for another file, which is imported with them: --parameter NAME=VALUE"
-        )
+    if VALUES in parts:
+        raise source.error(parts[VALUES], "values for another file, which is imported with them: --values FILE")
     for name in ("FileHeader", "Entities", "Storyboard"):
         if name not in parts:
             raise ProfileError(f"{origin}: <{name}>: value missing: a scenario, and no catalogue")

@@ -4,12 +4,14 @@ from collections.abc import Callable
 from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from simconsole.evaluation.report.metric_rows import rounded
 from simconsole.evaluation.report.scene_export import SCENE, scene_process
 from simconsole.processes.lifetimes import remove_half_made, undone
 from simconsole.profiles.faults import fault_label
+from simconsole.profiles.parts.turtlebot import TurtlebotProfile
+from simconsole.profiles.world import ArenaProfile
 from simconsole.recording.bundles.bundle import Bundle, add_export, open_bundle
 from simconsole.recording.bundles.manifest import Manifest, refuse_signed
 from simconsole.recording.bundles.provenance import facts as provenance_facts
@@ -17,8 +19,12 @@ from simconsole.recording.bundles.replay_bundle import recorded_session
 from simconsole.session.scene_worker import LIVE_SCENE
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import RecordingError
+from simconsole.world.arena.outlines import Array, wall_lines
 from simconsole.world.kinds.worlds import open_world
 from simconsole.world.route import Route
+
+if TYPE_CHECKING:
+    from simconsole.evaluation.metrics.table import Drive
 
 REPORT: Final = "report.html"
 PASSES: Final = 10
@@ -117,7 +123,23 @@ def write_scene(folder: Path, told: Told = _untold) -> Path:
 
 
 def _route(resolved: ResolvedSession) -> Route | None:
-    return None if resolved.world is None else open_world(resolved.world).route
+    """Return the theoretical path; robots have none: the way round an arena is one of many."""
+    robot = isinstance(resolved.vehicle, TurtlebotProfile)
+    return None if resolved.world is None or robot else open_world(resolved.world).route
+
+
+def _walls(resolved: ResolvedSession) -> tuple[Array, ...] | None:
+    """Return the walls round a robot; None: no robot drives."""
+    if not isinstance(resolved.vehicle, TurtlebotProfile):
+        return None
+    return wall_lines(resolved.world) if isinstance(resolved.world, ArenaProfile) else ()
+
+
+def _touches(resolved: ResolvedSession, drive: "Drive") -> dict[str, object]:
+    """Return how often a robot has touched something, for the page."""
+    if not isinstance(resolved.vehicle, TurtlebotProfile):
+        return {}
+    return {"times that it touched something": int(drive.columns("platform.motion.collisions")[0][-1])}
 
 
 def _report(bundle: Bundle, page: bool, told: Callable[[float], object]) -> dict[str, Any]:
@@ -135,7 +157,8 @@ def _report(bundle: Bundle, page: bool, told: Callable[[float], object]) -> dict
             drive,
             route,
             title,
-            _facts(resolved, manifest),
+            {**_facts(resolved, manifest), **_touches(resolved, drive)},
+            walls=_walls(resolved),
             faults=faults,
             latency_us=manifest.summary.get("latency_us"),
             acts=manifest.summary.get("acts", ()),

@@ -1,5 +1,6 @@
 """The map of a drive: driven path over theoretical path."""
 
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any, Final
 
@@ -15,23 +16,33 @@ from simconsole.values.signals import Mode
 from simconsole.world.route import Route
 
 _STEP_M: Final = 1.0
+_ARENA_STEP_M: Final = 0.05  # between points of a way among walls
 _LABEL_M: Final = 26.0  # how far beside the road a label stands
 _NOTED: Final[dict[str, Any]] = {"textcoords": "offset points", "color": NOTE, "fontsize": 7.5}
 
 
-def draw_map(figure: Any, drive: Drive, way: Track, changes: list[ModeChange], route: Route | None) -> None:
-    """Draw the map into a matplotlib figure."""
+def draw_map(
+    figure: Any,
+    drive: Drive,
+    way: Track,
+    changes: list[ModeChange],
+    route: Route | None,
+    walls: Sequence[Array] = (),
+) -> None:
+    """Draw the map into a matplotlib figure, with the walls of an arena, float64 [points, 2 or more] each, in m."""
     axes = figure.add_subplot()
     axes.set_aspect("equal", adjustable="datalim")
-    axes.set_title("Driven path against theoretical path")
+    axes.set_title("Driven path" if route is None else "Driven path against theoretical path")
     axes.set_xlabel("x in map / m")
     axes.set_ylabel("y in map / m")
     if route is not None:
         path = route.offset(0.0, 0.0, route.length_m, _STEP_M)
         axes.plot(*path.T, color=THEORY, linewidth=6.0, solid_capstyle="round", label="theoretical path")
         _label_landmarks(axes, route)
+    for number, wall in enumerate(walls):
+        axes.plot(wall[:, 0], wall[:, 1], color=NOTE, linewidth=1.4, label=None if number else "walls", zorder=3)
     x, y = drive.columns("vehicle.x_m", "vehicle.y_m")
-    _draw_driven(axes, x, y, way)
+    _draw_driven(axes, x, y, way, _ARENA_STEP_M if walls else _STEP_M)
     _draw_changes(axes, changes)
     edge = {"markeredgecolor": "white", "markeredgewidth": 1.2, "linestyle": "none", "zorder": 6}
     axes.plot(x[0], y[0], "o", color=START, markersize=10, label="start", **edge)
@@ -40,7 +51,7 @@ def draw_map(figure: Any, drive: Drive, way: Track, changes: list[ModeChange], r
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=6)
 
 
-def _draw_driven(axes: Any, x: Array, y: Array, way: Track) -> None:
+def _draw_driven(axes: Any, x: Array, y: Array, way: Track, step_m: float) -> None:
     autonomous = way.autonomous
     jumps = np.hypot(np.diff(x), np.diff(y)) > JUMP_M
     cuts = np.flatnonzero((autonomous[1:] != autonomous[:-1]) | jumps) + 1
@@ -49,7 +60,7 @@ def _draw_driven(axes: Any, x: Array, y: Array, way: Track) -> None:
         remote = autonomous[start]
         # One point of overlap closes the gap between two parts, unless the vehicle was put elsewhere.
         last = end + 1 if end < len(x) and not jumps[end - 1] else end
-        kept = start + path_thinned(x[start:last], y[start:last], _STEP_M)
+        kept = start + path_thinned(x[start:last], y[start:last], step_m)
         label = "driven by the autopilot" if remote else "driven by the person"
         axes.plot(
             x[kept],

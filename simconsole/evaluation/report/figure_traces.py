@@ -24,17 +24,25 @@ _METRES_FROM_M: Final = 1.5  # deviations beyond it are told in metres
 _NARROW: Final = 0.05  # share of the drive below which the mode's label does not fit
 
 
-def draw_traces(figure: Any, drive: Drive, way: Track, changes: list[ModeChange], route: Route | None) -> None:
-    """Draw the panels into a matplotlib figure, one distance axis for all; a deviation has its driver's own scale."""
-    drivers = _drivers(way) if route is not None else [("", PERSON, way.autonomous)]
-    heights = [3.0 / len(drivers) + 0.6 * (len(drivers) - 1)] * len(drivers)
+def draw_traces(
+    figure: Any, drive: Drive, way: Track, changes: list[ModeChange], route: Route | None, *, robot: bool = False
+) -> None:
+    """Draw the panels into a matplotlib figure, one distance axis for all; a deviation has its driver's own scale.
+
+    Of a `robot`, which follows no path and has no road wheels, there are speed, yaw rate and mode.
+    """
+    drivers = _drivers(way) if route is not None else [("", PERSON, way.autonomous)] * (not robot)
+    heights = [3.0 / len(drivers) + 0.6 * (len(drivers) - 1)] * len(drivers) if drivers else []
     *laterals, speed, wheel, modes = figure.subplots(
         len(drivers) + 3, 1, sharex=True, gridspec_kw={"height_ratios": (*heights, 2.6, 2.2, 0.55), "hspace": 0.04}
     )
     for axes, driver in zip(laterals, drivers, strict=True):
         _draw_lateral(axes, way, route, *driver)
     _draw_speed(speed, way, route)
-    _draw_steering(wheel, drive, way)
+    if robot:
+        _draw_turning(wheel, drive, way)
+    else:
+        _draw_steering(wheel, drive, way)
     _draw_modes(modes, way)
     for axes in (*laterals, speed, wheel):
         _draw_changes(axes, changes)
@@ -85,6 +93,12 @@ def _draw_steering(axes: Any, drive: Drive, way: Track) -> None:
     axes.set_title("Road-wheel angle, left positive")
     axes.set_ylabel("angle / deg")
     _line(axes, way.distance_m, drive.column("vehicle.road_wheel_rad") * DEG_PER_RAD, REMOTE, None)
+
+
+def _draw_turning(axes: Any, drive: Drive, way: Track) -> None:
+    axes.set_title("Yaw rate, left positive")
+    axes.set_ylabel("yaw rate / deg/s")
+    _line(axes, way.distance_m, drive.column("vehicle.yaw_rate_radps") * DEG_PER_RAD, REMOTE, None)
 
 
 def _draw_modes(axes: Any, way: Track) -> None:

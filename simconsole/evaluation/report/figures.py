@@ -1,12 +1,12 @@
 """The pictures of a report, as SVG text that is the same for the same drive, byte for byte (matplotlib, on demand)."""
 
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Final
 
 from simconsole.evaluation.manoeuvres.attempt import Panel
 from simconsole.evaluation.metrics.drive_metrics import ModeChange
-from simconsole.evaluation.metrics.table import Drive
+from simconsole.evaluation.metrics.table import Array, Drive
 from simconsole.evaluation.metrics.track import Track
 from simconsole.evaluation.report.figure_map import draw_map
 from simconsole.evaluation.report.figure_panels import draw_panels
@@ -40,14 +40,17 @@ STYLE: Final[Any] = {
 }
 
 
-def map_svg(drive: Drive, way: Track, changes: list[ModeChange], route: Route | None) -> str:
+def map_svg(
+    drive: Drive, way: Track, changes: list[ModeChange], route: Route | None, walls: Sequence[Array] = ()
+) -> str:
     """Return the driven path over the theoretical one, start green and end red (the paper's Fig. 9)."""
-    return _svg("map", (9.2, 7.4), lambda figure: draw_map(figure, drive, way, changes, route))
+    return _svg("map", (9.2, 7.4), lambda figure: draw_map(figure, drive, way, changes, route, walls))
 
 
-def traces_svg(drive: Drive, way: Track, changes: list[ModeChange], route: Route | None) -> str:
+def traces_svg(drive: Drive, way: Track, changes: list[ModeChange], route: Route | None, *, robot: bool = False) -> str:
     """Return lateral deviation, speed and steering over the distance driven, with the mode beneath."""
-    return _svg("traces", (9.2, 9.2), lambda figure: draw_traces(figure, drive, way, changes, route))
+    size = 9.2, 6.0 if robot else 9.2
+    return _svg("traces", size, lambda figure: draw_traces(figure, drive, way, changes, route, robot=robot))
 
 
 def panels_svg(name: str, panels: tuple[Panel, ...]) -> str:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from simconsole.evaluation.metrics.drive_metrics import metrics, mode_changes
-from simconsole.evaluation.metrics.table import Drive
+from simconsole.evaluation.metrics.table import Array, Drive
 from simconsole.evaluation.metrics.track import track
 from simconsole.evaluation.report.figure_words import map_words, traces_words
 from simconsole.evaluation.report.figures import map_svg, traces_svg
@@ -29,8 +29,11 @@ from simconsole.evaluation.report.tables import (
 )
 from simconsole.values.errors import RecordingError
 from simconsole.values.host.files import write_atomically
+from simconsole.values.units import MPS_PER_KMH
 from simconsole.world.route import Route
 
+_FAR_M: Final = 100.0
+_WALK_KMH: Final = 3.6
 _HEAD: Final = ("started", "participant", "trial", "machine", "simconsole")
 """Facts that stand at the head of the page, where they are known."""
 
@@ -45,6 +48,7 @@ def write_report(
     faults: Sequence[str] = (),
     latency_us: Mapping[str, Mapping[str, float]] | None = None,
     acts: Sequence[Mapping[str, Any]] = (),
+    walls: Sequence[Array] | None = None,
 ) -> dict[str, Any]:
     """Write the report of a drive and return its metrics (metrics/drive_metrics.py).
 
@@ -59,6 +63,7 @@ def write_report(
         latency_us: p50, p99, max and count of each hop (LatencyStatistics.summary_us). They differ between equal
             drives, so they are not among the metrics.
         acts: the operator's acts, as the drive's summary has them; their notes stand beside the marks.
+        walls: of what a robot drives in, float64 [points, 2 or more] each: x, y in m; None: no robot drives.
 
     Raises:
         RecordingError: a column is missing, or the file cannot be written.
@@ -66,9 +71,10 @@ def write_report(
     way = track(drive, route)
     changes = mode_changes(drive, way)
     found = metrics(drive, route, way, faults, changes)
+    traces = traces_svg(drive, way, changes, route, robot=walls is not None)
     figures = (
-        picture(map_svg(drive, way, changes, route), "Map of the drive", map_words(found, route)),
-        picture(traces_svg(drive, way, changes, route), "The drive over its distance", traces_words(found, route)),
+        picture(map_svg(drive, way, changes, route, walls or ()), "Map of the drive", map_words(found, route)),
+        picture(traces, "The drive over its distance", traces_words(found, route)),
     )
     try:
         write_atomically(path, page(title, found, figures, extra or {}, latency_us or {}, acts))
@@ -119,15 +125,25 @@ def _origin(extra: Mapping[str, object]) -> str:
     return "; ".join(("simconsole drive report", *known))
 
 
+def _driven(distance_m: float) -> str:
+    """Return a distance in km, one that is less than 100 m in m."""
+    return f"{distance_m / 1000.0:.2f} km" if distance_m >= _FAR_M else f"{rounded(distance_m)} m"
+
+
+def _speed(speed_kmh: float) -> str:
+    """Return a speed in km/h, one that is slower than a walk in m/s."""
+    return f"{speed_kmh:.1f} km/h" if speed_kmh >= _WALK_KMH else f"{speed_kmh * MPS_PER_KMH:.2f} m/s"
+
+
 def _tiles(found: Mapping[str, Any]) -> str:
     part = found["autonomous"] or {}
     shown = [
-        (f"{found['distance_m'] / 1000.0:.2f} km", "driven in all"),
+        (_driven(found["distance_m"]), "driven in all"),
         (f"{found['duration_s']:.0f} s", "duration"),
     ]
     if part:
-        shown.append((f"{part['distance_m'] / 1000.0:.2f} km", "by the autopilot"))
-        shown.append((f"{part['mean_speed_kmh']:.1f} km/h", "mean speed of the autopilot"))
+        shown.append((_driven(part["distance_m"]), "by the autopilot"))
+        shown.append((_speed(part["mean_speed_kmh"]), "mean speed of the autopilot"))
     if part.get("lateral_rms_m") is not None:
         shown.append((f"{rounded(part['lateral_rms_m'] * 100.0)} cm", "lateral error of the autopilot, RMS"))
         shown.append((f"{rounded(part['lateral_max_m'] * 100.0)} cm", "its largest"))

@@ -2,26 +2,21 @@
 
 import tempfile
 from pathlib import Path
-from typing import Final
 
 from simconsole.evaluation.checks import manoeuvre_check
 from simconsole.evaluation.checks.memory_recorder import MemoryRecorder
 from simconsole.evaluation.checks.scenario_check import Bound, drive_scenario
 from simconsole.evaluation.checks.whole_drive import judge_metrics, judge_modes, modes_of, numbers_of
-from simconsole.evaluation.metrics.table import Drive, drive_of, recorded_drive
+from simconsole.evaluation.metrics.table import drive_of, read_at_once
 from simconsole.evaluation.sweep.kept import write_drive
 from simconsole.evaluation.sweep.task import Task, TaskResult
 from simconsole.profiles.scenario import ScenarioProfile
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.provenance import Given
-from simconsole.recording.recorded_advice import recorded_advice
 from simconsole.session import lifecycle
 from simconsole.session.scripted.opening import as_driven
 from simconsole.tick.advance import Console
 from simconsole.values.errors import SimConsoleError, one_line
-
-IN_MEMORY: Final = 1 << 23
-"""Values of a drive, 64 MiB of them, up to which it is read at once."""
 
 
 def drive_task(task: Task) -> TaskResult:
@@ -52,23 +47,13 @@ def _session(task: Task, folder: Path) -> TaskResult:
         raise result.failure
     if result.recording_failure is not None:
         return TaskResult(index=task.index, outcome="refused", detail=result.recording_failure)
-    found = dict(numbers_of(_read(folder, result.ticks), task.resolved))
+    found = dict(numbers_of(read_at_once(open_bundle(folder).log, result.ticks), task.resolved))
     return TaskResult(index=task.index, outcome="driven", ticks=result.ticks, digest=result.digest, metrics=found)
 
 
 def trial_of(task: Task) -> str:
     """Return what a bundle says of which drive it is."""
     return f"{task.source} {task.index}"
-
-
-def _read(folder: Path, ticks: int) -> Drive:
-    """Return the drive of so many ticks in a bundle: in memory if it is short, for its metrics read it many times."""
-    log = open_bundle(folder).log
-    if ticks * len(log.header.columns) > IN_MEMORY:
-        return recorded_drive(log)
-    table = log.table()  # one pass: `recorded_drive` would make one more to count the ticks
-    drive = drive_of(table.vectors, table.columns, table.tick_hz, int(table.ticks[0]) if len(table.ticks) else 1)
-    return drive._replace(advice=tuple(recorded_advice(log)))
 
 
 def _scenario(task: Task, scenario: ScenarioProfile, folder: Path | None) -> TaskResult:

@@ -17,16 +17,11 @@ _TRIES: Final = 3
 
 
 def drive_here(tasks: Sequence[Task], jobs: int) -> Generator[TaskResult, None, None]:
-    """Drive tasks in `jobs` processes of this machine; yield results as they come.
-
-    The first drive is alone: what has to be compiled is compiled once, before the other processes start.
-    """
+    """Drive tasks in `jobs` processes of this machine; yield results as they come."""
     pool = WorkerPool()
     with ThreadPoolExecutor(jobs) as threads:
         try:
-            if tasks:
-                yield threads.submit(pool.drive, tasks[0]).result()
-            waiting: list[Future[TaskResult]] = [threads.submit(pool.drive, task) for task in tasks[1:]]
+            waiting: list[Future[TaskResult]] = [threads.submit(pool.drive, task) for task in tasks]
             for future in as_completed(waiting):
                 yield future.result()
         finally:

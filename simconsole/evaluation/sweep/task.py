@@ -14,6 +14,10 @@ Outcome = Literal["driven", "passed", "failed", "refused", "crashed", "timed out
 says why; crashed, timed out: twice, so that the drive is lost."""
 
 GOOD: Final = ("driven", "passed")
+RECEIVED: Final = b"\n"
+"""Tells a worker that its result has come."""
+FORK: Final = b"fork\n"
+"""Asks a worker for a copy of itself."""
 
 
 class Task(msgspec.Struct, frozen=True, kw_only=True):

@@ -1,64 +1,18 @@
 """Processes that drive one task after the other (`worker.py`), one for each thread that asks.
 
 What takes one down, an error in compiled code, the kernel for want of memory, a drive that never ends, loses the drive
-that it was at and nothing else.
+that it was at and nothing else. The first drive is alone, so that kernels are compiled once. The process that drove it
+drives no more: the others are its copies, which have loaded already what takes seconds.
 """
 
 import threading
-from contextlib import suppress
-from typing import Final
+from typing import Final, TypeVar
 
-import msgspec
+from simconsole.evaluation.sweep.pool_worker import PoolWorker, StartedWorker
+from simconsole.evaluation.sweep.task import Outcome, Task, TaskResult
 
-from simconsole.evaluation.sweep.task import Outcome, Task, TaskResult, to_bytes
-from simconsole.processes.lifetimes import close_pipe, spawn
-
-_MODULE: Final = "simconsole.evaluation.sweep.worker"
-_ENDS_S: Final = 10.0
-
-
-class PoolWorker:
-    """One such process, started when it is needed. For one thread at a time; `close` may come from another."""
-
-    def __init__(self) -> None:
-        self._process = spawn(["-m", _MODULE], stdout=-1)
-        self._gave_up = False
-
-    def drive(self, task: Task) -> TaskResult | None:
-        """Drive a task there; None if the process has ended meanwhile, or was ended because it took too long."""
-        process = self._process
-        assert process.stdin is not None
-        assert process.stdout is not None
-        timer = threading.Timer(task.timeout_s, self._give_up)
-        timer.daemon = True
-        timer.start()
-        try:
-            process.stdin.write(to_bytes(task) + b"\n")
-            process.stdin.flush()
-            line = process.stdout.readline()
-        except (OSError, ValueError):  # it was gone already, or is closed by another thread
-            return None
-        finally:
-            timer.cancel()
-        return msgspec.json.decode(line, type=TaskResult) if line.endswith(b"\n") else None
-
-    @property
-    def gave_up(self) -> bool:
-        """Whether it was ended because a task took too long."""
-        return self._gave_up
-
-    def _give_up(self) -> None:
-        self._gave_up = True
-        self._process.kill()
-
-    def close(self) -> None:
-        """End it; harmless twice."""
-        self._process.kill()
-        self._process.wait(_ENDS_S)
-        close_pipe(self._process)
-        if self._process.stdout is not None:
-            with suppress(OSError):
-                self._process.stdout.close()
+_TRIES: Final = 2
+_Worker = TypeVar("_Worker", bound=PoolWorker)
 
 
 class WorkerPool:
@@ -69,40 +23,75 @@ class WorkerPool:
         self._all: set[PoolWorker] = set()
         self._lock = threading.Lock()
         self._closed = False
+        self._beginning = threading.Lock()
+        self._first: StartedWorker | None = None
+        self._has_copies = True  # until one is asked for and cannot be made
 
     def drive(self, task: Task) -> TaskResult:
         """Drive a task in this thread's process."""
         outcome: Outcome = "crashed"
-        for _ in range(2):
-            worker = self._worker()
-            found = worker.drive(task)
+        for _ in range(_TRIES):
+            worker, found = self._drive(task)
             if found is not None:
                 return found
             outcome = "timed out" if worker.gave_up else "crashed"
             self._drop(worker)
+            self._of_thread.worker = None
         detail = f"twice, after {task.timeout_s:g} s" if outcome == "timed out" else "twice: the process has ended"
         return TaskResult(index=task.index, outcome=outcome, detail=detail)
 
     def close(self) -> None:
         """End all of them. Threads that wait for one get no result."""
         with self._lock:
-            self._closed, workers = True, tuple(self._all)
+            self._closed, first = True, self._first
+            workers = [worker for worker in self._all if worker is not first]
         for worker in workers:
             worker.close()
+        if first is not None:
+            first.end()
 
-    def _worker(self) -> PoolWorker:
+    def _drive(self, task: Task) -> tuple[PoolWorker, TaskResult | None]:
         worker: PoolWorker | None = getattr(self._of_thread, "worker", None)
         if worker is None:
-            with self._lock:
-                if self._closed:
-                    raise InterruptedError("the sweep has ended")
-                worker = PoolWorker()
-                self._all.add(worker)
+            with self._beginning:
+                worker = self._another()
+                if worker is None:
+                    return self._begin(task)
             self._of_thread.worker = worker
-        return worker
+        return worker, worker.drive(task)
+
+    def _begin(self, task: Task) -> tuple[PoolWorker, TaskResult | None]:
+        first = self._held(StartedWorker())
+        found = first.drive(task)
+        if found is not None:
+            self._first = first
+        return first, found
+
+    def _another(self) -> PoolWorker | None:
+        """Return a process for this thread. None: there is no first one, which is begun with a drive."""
+        first, copy = self._first, None
+        if first is None:
+            return None if self._has_copies else self._held(StartedWorker())
+        try:
+            copy = first.copy()
+        except ChildProcessError:
+            self._first = None
+            self._drop(first)
+            return None
+        if copy is not None:
+            return self._held(copy)
+        self._first, self._has_copies = None, False  # it is this thread's, and the others are started
+        return first
+
+    def _held(self, worker: _Worker) -> _Worker:
+        with self._lock:
+            if not self._closed:
+                self._all.add(worker)
+                return worker
+        worker.close()
+        raise InterruptedError("the sweep has ended")
 
     def _drop(self, worker: PoolWorker) -> None:
         worker.close()
-        self._of_thread.worker = None
         with self._lock:
             self._all.discard(worker)

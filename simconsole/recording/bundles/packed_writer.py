@@ -80,9 +80,19 @@ class PackedLogWriter:
             ]
             for message in (message for record in records for message in record.messages):
                 digests[message.stream] = message.digest
-        arrays = [self._pa.array(columns[field.name], field.type) for field in self._schema]
+        arrays = [self._array(field.type, columns[field.name]) for field in self._schema]
         self._writer.write_table(self._pa.table(arrays, schema=self._schema), row_group_size=BLOCK_TICKS)
         self._digests.append(digests)
+
+    def _array(self, kind: Any, values: Any) -> Any:
+        """Return a column of the file: numbers as they lie in memory, without the quarter of a second of `pa.array`.
+
+        That imports pandas, where there is one.
+        """
+        if isinstance(values, list):
+            return self._pa.array(values, kind)
+        numbers = values.astype(kind.to_pandas_dtype(), order="C", casting="safe", copy=False)
+        return self._pa.Array.from_buffers(kind, len(numbers), [None, self._pa.py_buffer(numbers)])
 
     def close(self) -> None:
         """Write what the file says of itself, and close it."""

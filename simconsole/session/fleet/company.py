@@ -8,16 +8,21 @@ import numpy as np
 from simconsole.session.traffic_source import ego_box
 from simconsole.tick.advance import Console, ConsoleState
 from simconsole.values.layout import read
+from simconsole.values.platform import Platform
+from simconsole.values.signals import VehicleState
 from simconsole.values.state_vector import LAYOUT
 from simconsole.world.roads.road_map import Array
 from simconsole.world.traffic.crashes import box_moving, guessed, motion_of
 from simconsole.world.traffic.impact import Moving
-from simconsole.world.traffic.road_users import FIELDS, Box, RoadUser, RoadUserKind
+from simconsole.world.traffic.road_users import Box, RoadUser, RoadUserKind
 
 LIGHT_KG: Final = 1.8
 """Of a platform that takes no impact, a robot or a ball: it stops no car. A TurtleBot3 Waffle's."""
 
 _INDICATORS_AT: Final = LAYOUT.command.at("turn_indicators")
+_MOVING: Final = ("x_m", "y_m", "yaw_rad", "speed_mps", "z_m", "turn_indicators")
+_MOVING_AT: Final = [RoadUser._fields.index(name) for name in _MOVING]
+"""What changes of a road user that is a platform."""
 
 
 class Company:
@@ -26,36 +31,31 @@ class Company:
     def __init__(self, consoles: Sequence[Console], states: Sequence[ConsoleState]) -> None:
         """Take the platforms and their states before the first tick."""
         self._platforms = [console.platform for console in consoles]
-        self._table = np.zeros((len(consoles), FIELDS))
-        self._vehicles = [read(state.vector, LAYOUT.vehicle) for state in states]
+        self._table = np.array([_standing(number, platform) for number, platform in enumerate(self._platforms)])
+        self._vehicles: list[VehicleState] = []
         self._boxes: list[Box] = []
         self.renew(states)
 
     def renew(self, states: Sequence[ConsoleState]) -> None:
         """Tell from now on where the platforms are in these states."""
-        self._boxes.clear()
-        for number, (state, platform) in enumerate(zip(states, self._platforms, strict=True)):
-            vehicle = read(state.vector, LAYOUT.vehicle)
-            self._vehicles[number] = vehicle
-            box = ego_box(vehicle, platform)
-            self._boxes.append(box)
-            self._table[number] = RoadUser(
-                id=float(number),
-                kind=float(RoadUserKind.CAR),
-                x_m=box.x_m,
-                y_m=box.y_m,
-                yaw_rad=box.yaw_rad,
-                speed_mps=box.speed_mps,
-                length_m=box.length_m,
-                width_m=box.width_m,
-                height_m=platform.height_m,
-                z_m=vehicle.z_m,
-                turn_indicators=float(state.vector[_INDICATORS_AT]),
-            )
+        self._vehicles = [read(state.vector, LAYOUT.vehicle) for state in states]
+        self._boxes = [ego_box(*both) for both in zip(self._vehicles, self._platforms, strict=True)]
+        self._table[:, _MOVING_AT] = [
+            (box.x_m, box.y_m, box.yaw_rad, box.speed_mps, vehicle.z_m, state.vector[_INDICATORS_AT])
+            for state, vehicle, box in zip(states, self._vehicles, self._boxes, strict=True)
+        ]
 
     def around(self, number: int) -> "Beside":
         """Return the road users of the platform of this number: all others."""
         return Beside(self, [other for other in range(len(self._platforms)) if other != number])
+
+    def vehicle(self, number: int) -> VehicleState:
+        """Return the state of the platform of this number."""
+        return self._vehicles[number]
+
+    def box(self, number: int) -> Box:
+        """Return the footprint of the platform of this number."""
+        return self._boxes[number]
 
     def boxes(self) -> list[Box]:
         """Return the footprints of all platforms, in their order."""
@@ -98,3 +98,18 @@ class Beside:
 
     def push(self, number: float, change_mps: float) -> None:
         """Do nothing: who is pushed finds the same touch among its own road users."""
+
+
+def _standing(number: int, platform: Platform) -> RoadUser:
+    """Return a platform as a road user, but for where it is and how it moves."""
+    return RoadUser(
+        id=float(number),
+        kind=float(RoadUserKind.CAR),
+        x_m=0.0,
+        y_m=0.0,
+        yaw_rad=0.0,
+        speed_mps=0.0,
+        length_m=platform.length_m,
+        width_m=platform.width_m,
+        height_m=platform.height_m,
+    )

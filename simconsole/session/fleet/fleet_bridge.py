@@ -1,4 +1,4 @@
-"""The one rosbridge server of several platforms in lockstep: each has its topics, its commander and its link."""
+"""The one rosbridge server of several platforms, in the tick loop: each has its topics, its commander and its link."""
 
 import time
 from collections.abc import Callable, Sequence
@@ -7,11 +7,13 @@ from pathlib import Path
 from subprocess import Popen
 from typing import TYPE_CHECKING
 
+from simconsole.bridge.console.topics import ODOMETRY, ODOMETRY_HZ
 from simconsole.processes.lifetimes import Interrupt, end, tell_to_end
 from simconsole.session.autopilot_program import PROGRAM_END_S, new_nonce, own_token, start_autopilot
 from simconsole.session.fleet.members import is_commanded
-from simconsole.session.headless import LOOK_S, lockstep_link, surroundings
-from simconsole.session.lockstep import LockstepLink
+from simconsole.session.fleet.served_link import ServedLink
+from simconsole.session.headless import LOOK_S, surroundings
+from simconsole.session.lockstep import AskingLink
 from simconsole.session.traffic_source import TrafficSource
 from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession
@@ -30,8 +32,8 @@ def links(
     interrupt: Interrupt,
     stack: ExitStack,
     on_bridge: Callable[[str], None],
-) -> list[LockstepLink | None]:
-    """Open the server, start the autopilots, wait until somebody hears the odometry of each platform that is commanded.
+) -> list[AskingLink | ServedLink | None]:
+    """Open the server, start the autopilots; in lockstep, wait until somebody hears each platform that is commanded.
 
     Args:
         parts: the session of each platform.
@@ -43,13 +45,14 @@ def links(
         on_bridge: told where it listens.
 
     Returns:
-        The link of each platform; none where the session is not in lockstep.
+        The link of each platform; none where the session has no server, or nothing paces it.
 
     Raises:
         BridgeError: it cannot listen, an autopilot cannot be started, or a platform's controller does not come in time.
         ProfileError: as `ConsoleBridge`.
     """
-    if parts[0].session.mode.pacing != "lockstep":
+    pacing = parts[0].session.mode.pacing
+    if pacing == "free" or parts[0].session.outputs.bridge is None:
         return [None] * len(parts)
     from simconsole.bridge.transport.lockstep_port import LockstepPort
     from simconsole.bridge.transport.lockstep_server import LockstepBridge
@@ -61,9 +64,10 @@ def links(
         for bridge, part, console, sight in zip(bridges, parts, consoles, sights, strict=True)
     ]
     assert first[0] is not None
+    odometry_hz = mode.control_hz if pacing == "lockstep" else first[0].rates_hz.get(ODOMETRY, ODOMETRY_HZ)
     server = LockstepBridge(
         first[0],
-        odometry_hz=mode.control_hz,
+        odometry_hz=odometry_hz,
         folder=folder,
         drive=drive,
         around=first[1],
@@ -72,16 +76,20 @@ def links(
     ports = [LockstepPort.of_first(server)]
     for bridge, around in others:
         assert bridge is not None
-        ports.append(LockstepPort.beside(server, bridge, mode.control_hz, around))
+        ports.append(LockstepPort.beside(server, bridge, odometry_hz, around))
     programs: list[Popen[bytes]] = []
     stack.callback(end, programs, PROGRAM_END_S)
     stack.callback(server.close)  # closes its clients' connections before the programs' end is waited for
     stack.callback(tell_to_end, programs)
     on_bridge(server.url)
     _start_autopilots(parts, server.url, drive, programs)
+    if pacing == "realtime":
+        return [ServedLink(port) for port in ports]
     awaited = [port.console for port, part in zip(ports, parts, strict=True) if is_commanded(part.session)]
     _wait(server, awaited, programs, mode.wait_for_controller_s, interrupt)
-    return [lockstep_link(port, parts[0].session, interrupt) for port in ports]
+    return [
+        AskingLink(port, mode.control_period_ticks, mode.answer_timeout_s, lambda: interrupt.raised) for port in ports
+    ]
 
 
 def _start_autopilots(parts: Sequence[ResolvedSession], url: str, drive: str, programs: list[Popen[bytes]]) -> None:

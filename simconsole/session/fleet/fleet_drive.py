@@ -16,13 +16,19 @@ from simconsole.recording.bundles.provenance import NOTHING_GIVEN, Given
 from simconsole.session.fleet.company import Company
 from simconsole.session.fleet.fleet_bridge import links
 from simconsole.session.fleet.members import members
+from simconsole.session.fleet.served_link import ServedLink
+from simconsole.session.fleet.shared_pace import SharedPace
 from simconsole.session.fleet.shared_sumo import SharedSumo, shared_sumo
 from simconsole.session.fleet.sight import Sight, sight_of
 from simconsole.session.headless import open_headless
 from simconsole.session.lifecycle import ENDLESS_TICKS, DriveResult, bundle_of, list_what_workers_wrote, warm_up
-from simconsole.session.lockstep import LockstepLink
-from simconsole.session.opened import Opened
+from simconsole.session.lockstep import AskingLink
+from simconsole.session.opened import Among, Opened
+from simconsole.session.pacing import Pacer, realtime_hints
 from simconsole.session.preconditions import check_session, check_world
+from simconsole.session.provenance import with_devices
+from simconsole.session.realtime import open_realtime
+from simconsole.session.seat import look_for_devices
 from simconsole.tick.advance import Console, ConsoleState
 from simconsole.tick.assembly import ResolvedSession, assemble
 from simconsole.tick.loop import Components, come_to_rest, steps
@@ -40,7 +46,7 @@ class _Member(NamedTuple):
     bundle: BundleWriter
     sight: Sight | None  # of the others; None for a robot, which is told of circles
     opened: Opened
-    link: LockstepLink | None  # None: no lockstep
+    link: AskingLink | ServedLink | None  # None: no server
 
 
 def drive_fleet(
@@ -66,6 +72,7 @@ def drive_fleet(
     for part in parts:
         check_session(part.session)
         check_world(part)
+        look_for_devices(part)
     assembled = [assemble(part, compiled) for part in parts]
     for part, (console, state) in zip(parts, assembled, strict=True):
         warm_up(console, state, awaited=part.session.mode.pacing == "lockstep")
@@ -79,13 +86,14 @@ def drive_fleet(
         ]
         bundles = _bundles(named, consoles, sights, folder, given, stack)
         opened = _open(parts, consoles, sights, bundles, interrupt, stack, on_bridge)
+        interrupt.check()
         fleet = [
             _Member(part, *built, bundle, sight, *each)
             for part, built, bundle, sight, each in zip(parts, assembled, bundles, sights, opened, strict=True)
         ]
         began_s = time.monotonic()
         states = _run(fleet, company, sumo, interrupt, show, until_left)
-        if interrupt.raised:
+        if interrupt.raised or any(member.opened.left() for member in fleet):
             states = [
                 come_to_rest(member.console, state, member.opened.components.recorder)
                 for member, state in zip(fleet, states, strict=True)
@@ -133,12 +141,25 @@ def _open(
     interrupt: Interrupt,
     stack: ExitStack,
     on_bridge: Callable[[str], None],
-) -> list[tuple[Opened, LockstepLink | None]]:
+) -> list[tuple[Opened, AskingLink | ServedLink | None]]:
     ports = links(parts, consoles, sights, bundles[0].folder, interrupt, stack, on_bridge)
-    return [
-        (open_headless(part, console, bundle.log, bundle.folder, interrupt, stack, link=port, others=sight), port)
-        for part, console, sight, bundle, port in zip(parts, consoles, sights, bundles, ports, strict=True)
-    ]
+    pace, not_granted = SharedPace(Pacer(consoles[0].tick_hz), len(parts)), list[str]()
+    opened = list[tuple[Opened, AskingLink | ServedLink | None]]()
+    several = zip(parts, consoles, sights, bundles, ports, strict=True)
+    for number, (part, console, sight, bundle, port) in enumerate(several):
+        what = part, console, bundle.log, bundle.folder, interrupt, stack
+        if part.session.mode.pacing == "realtime":
+            assert not isinstance(port, AskingLink)
+            one = open_realtime(*what, Among(sight, port, pace.of(number), not_granted))
+        else:
+            assert not isinstance(port, ServedLink)
+            one = open_headless(*what, link=port, others=sight)
+        if one.identities:
+            bundle.extend_provenance(with_devices(bundle.manifest.provenance, one.identities))
+        opened.append((one, port))
+    if parts[0].session.mode.pacing == "realtime":
+        not_granted += stack.enter_context(realtime_hints())
+    return opened
 
 
 def _run(
@@ -162,17 +183,20 @@ def _run(
     ]
 
     has_robots = any(member.console.others for member in fleet)
+    links = [member.link for member in fleet if isinstance(member.link, AskingLink)]
+    turn_ticks = 1 if session.mode.pacing == "realtime" else None  # no wheel waits for the others' period
 
     def meet(states: Sequence[ConsoleState]) -> None:
-        """Tell each where the others are, all of the same moment."""
+        """Tell each where the others are, all of the same moment; meanwhile their controllers answer."""
         if has_robots:
             whereabouts.renew(states)
         company.renew(states)
         if sumo is not None:
             sumo.step(states[0].tick)
-        for member, state in zip(fleet, states, strict=True):
+        for number, (member, state) in enumerate(zip(fleet, states, strict=True)):
             if member.sight is not None:
-                member.sight.look(Snapshot(state.tick, tick_hz, state.vector))
+                member.sight.look(Snapshot(state.tick, tick_hz, state.vector), company, number)
+        AskingLink.hear_all(links)
 
     def finished(states: Sequence[ConsoleState]) -> bool:
         """Show the first platform as far as it is; return whether somebody or something ends the drive."""
@@ -182,7 +206,7 @@ def _run(
             return True
         return until_left and not any(member.link is not None and member.link.clients for member in fleet)
 
-    return run_together(drives, initial, meet, session.mode.control_period_ticks, finished)
+    return run_together(drives, initial, meet, session.mode.control_period_ticks, finished, turn_ticks)
 
 
 def _told(member: _Member, number: int, whereabouts: Whereabouts) -> Components:

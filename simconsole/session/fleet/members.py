@@ -1,17 +1,19 @@
 """A session with several platforms, taken apart: one session of one platform for each."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Final
 
 import msgspec
 
 from simconsole.profiles.bridge import BridgeProfile
+from simconsole.profiles.device import CockpitProfile, RoleBinding
+from simconsole.profiles.files.loader import load
 from simconsole.profiles.parts.turtlebot import TurtlebotProfile
-from simconsole.profiles.session import Devices, PlatformSection, SessionProfile, Start
+from simconsole.profiles.session import Devices, Outputs, PlatformSection, SessionProfile, Start
 from simconsole.profiles.vehicle import VehicleProfile
 from simconsole.profiles.world import ArenaProfile, WorldProfile
-from simconsole.session.resolution import with_start
+from simconsole.session.resolution import language_of, with_start
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import ProfileError
 from simconsole.values.units import DEG_PER_RAD
@@ -39,8 +41,14 @@ def members(resolved: ResolvedSession) -> dict[str, ResolvedSession]:
         own = with_start(session, _start(platform, number, session, resolved.world))
         own = _of_its_own(own, platform, number, platform.name == seat)
         taken[platform.name] = msgspec.structs.replace(
-            resolved, session=own, vehicle=_erring(vehicle, number), fleet=()
+            resolved,
+            session=own,
+            vehicle=_erring(vehicle, number),
+            cockpit=load("devices", platform.cockpit, CockpitProfile) if platform.cockpit else resolved.cockpit,
+            language=language_of(platform.hud.language) if platform.hud else resolved.language,
+            fleet=(),
         )
+    _check_devices(taken)
     return {seat: taken.pop(seat), **taken}
 
 
@@ -53,17 +61,30 @@ def _of_its_own(session: SessionProfile, platform: PlatformSection, number: int,
     """Return the session as one of its platforms has it."""
     replace = msgspec.structs.replace
     driver = platform.driver or (session.devices.driver if seated else "none")
-    devices: Devices = replace(session.devices, driver=driver, person=platform.person or session.devices.person)
+    devices: Devices = replace(
+        session.devices,
+        driver=driver,
+        person=platform.person or session.devices.person,
+        cockpit=platform.cockpit or session.devices.cockpit,
+    )
     scenario = replace(session.scenario, vehicle=platform.vehicle or session.scenario.vehicle)
     features, outputs = session.features, session.outputs
     if not seated:
         scenario, features = replace(scenario, faults=()), replace(features, commands=None)
+    if session.mode.pacing == "realtime":
+        outputs = _shown(outputs, platform, seated)
     if not platform.autopilot:
         features = replace(features, autopilot=None)
     if outputs.bridge is not None:
         outputs = replace(outputs, bridge=_bridge(outputs.bridge, platform.name, number))
     own: SessionProfile = replace(session, devices=devices, scenario=scenario, features=features, outputs=outputs)
     return own
+
+
+def _shown(outputs: Outputs, platform: PlatformSection, seated: bool) -> Outputs:
+    """Return the outputs with the window of one platform; sound and operators' recording are the seat's."""
+    own: Outputs = outputs if seated else msgspec.structs.replace(outputs, hud=None, scene=None, sound=None)
+    return own if platform.hud is None else msgspec.structs.replace(own, hud=platform.hud)
 
 
 def _bridge(bridge: BridgeProfile, name: str, number: int) -> BridgeProfile:
@@ -115,17 +136,47 @@ def _check(session: SessionProfile) -> None:
     """
     bridge = session.outputs.bridge
     alone = {
-        "mode.pacing: lockstep, or free with --headless": session.mode.pacing != "realtime",
         "mode.start: at_once": session.mode.start == "at_once",
         "outputs.can: none": session.outputs.can is None,
+        "features.speed_advice: false where a clock paces the drive": session.mode.pacing != "realtime"
+        or not session.features.speed_advice,
     }
     wrong = [wanted for wanted, is_so in alone.items() if not is_so]
     if wrong:
         raise ProfileError(f"scenario.platforms: several platforms need {', '.join(wrong)}")
     if session.mode.pacing == "lockstep" and bridge is None:
         raise ProfileError("scenario.platforms: several platforms in lockstep need outputs.bridge")
-    if bridge is not None and (bridge.upstream is not None or bridge.ros2 is not None or bridge.external_view):
-        raise ProfileError("scenario.platforms: outputs.bridge: without upstream, ros2 and external_view, for several")
+    if bridge is not None and (bridge.upstream or bridge.ros2 or bridge.external_view or bridge.camera):
+        raise ProfileError(
+            "scenario.platforms: outputs.bridge: without upstream, ros2, external_view and camera, for several"
+        )
+
+
+def _check_devices(parts: Mapping[str, ResolvedSession]) -> None:
+    """Refuse two persons at one device.
+
+    Raises:
+        ProfileError: names platforms and device.
+    """
+    taken: list[tuple[str, RoleBinding]] = []
+    for name, part in parts.items():
+        if part.session.devices.driver != "sdl":
+            continue
+        for role in part.cockpit.roles:
+            other = next((whose for whose, theirs in taken if _may_be_one(role, theirs)), None)
+            if other is not None:
+                usb_id = f"{role.vendor_id:04x}:{role.product_id:04x}"
+                raise ProfileError(
+                    f"scenario.platforms: {name}: cockpit: role {role.role}: value {usb_id}: a device of its own, or a"
+                    f" port in the profiles of both, for {other} has it"
+                )
+        taken += [(name, role) for role in part.cockpit.roles]
+
+
+def _may_be_one(one: RoleBinding, other: RoleBinding) -> bool:
+    """Return whether two roles may be played by one device."""
+    at_one_port = not one.port or not other.port or one.port == other.port
+    return one.key[:2] == other.key[:2] and at_one_port
 
 
 def _check_traffic(session: SessionProfile, fleet: Sequence[VehicleProfile]) -> None:

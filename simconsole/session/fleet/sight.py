@@ -17,9 +17,10 @@ class Sight(TrafficSource):
     def publish(self, snapshot: Snapshot) -> None:
         """Do nothing yet: others have still to make the ticks of this period."""
 
-    def look(self, snapshot: Snapshot) -> None:
-        """Look at the others, at the end of a period."""
-        super().publish(snapshot)
+    def look(self, snapshot: Snapshot, company: Company, number: int) -> None:
+        """Look at the others, at the end of a period; the platform is that of this number, where `company` has it."""
+        if snapshot.tick % self._period_ticks == 0:
+            self._look_around(snapshot, company.vehicle(number), company.box(number))
 
 
 def sight_of(

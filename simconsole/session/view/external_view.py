@@ -49,7 +49,7 @@ def display_settings(resolved: ResolvedSession) -> HudSettings:
         by_keyboard=session.devices.driver == "keyboard",
         language=resolved.language,
     )
-    if resolved.world is None:
+    if resolved.world is None or settings.is_robot:  # robots follow no road
         return settings
     route = open_world(resolved.world).route
     return settings._replace(limit_kmh=limit_kmh(route), guidance=guidance_of(route))

@@ -19,7 +19,7 @@ from functools import cache, partial
 from importlib import import_module
 from pathlib import Path
 from secrets import token_hex
-from typing import Any, Final, TypeVar
+from typing import Any, Final, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -140,8 +140,9 @@ def compiled_for_each(step: Callable[..., Any]) -> Callable[..., None]:
     Returns: a function of (rows before, rows after, parameters, grounds, which of them each vehicle is on, an int), the
         tables float64 [vehicles or grounds, columns].
     """
-    twin = _closed(_for_each, step=_for_numba(step), prange=_numba().prange)
-    return _cached(twin, digest(step) + "-each", parallel=True, _nrt=True)  # type: ignore[no-any-return]
+    twin = _closed(_for_each, prange=_numba().prange)
+    late = _Late(twin, lambda: {"step": _for_numba(step)})
+    return _cached(late, digest(step) + "-each", parallel=True, _nrt=True)  # type: ignore[no-any-return]
 
 
 def _for_each(before: Any, after: Any, parameters: Any, grounds: Any, on: Any, count: int) -> None:
@@ -180,7 +181,8 @@ class _Holding(partial[Any]):
 @cache
 def _keeper(kind: Any) -> Any:
     """Return the dispatcher that writes values of a numba type at an address."""
-    return _cached(_closed(_keep, keep=lowering.memory_of(kind)[0]), f"{_kind_stamp(kind)}-keep")
+    late = _Late(_closed(_keep), lambda: {"keep": lowering.memory_of(kind)[0]})
+    return _cached(late, f"{_kind_stamp(kind)}-keep")
 
 
 def _keep(address: int, held: Any) -> None:
@@ -190,8 +192,8 @@ def _keep(address: int, held: Any) -> None:
 @cache
 def _caller(function: Callable[..., Any], kind: Any) -> Any:
     """Return the dispatcher of a kernel whose first argument, of this numba type, is given by its address."""
-    twin = _closed(_with_kept, kept=lowering.memory_of(kind)[1], function=_for_numba(function))
-    return _cached(twin, f"{digest(function)}-{_kind_stamp(kind)}")
+    late = _Late(_closed(_with_kept), lambda: {"kept": lowering.memory_of(kind)[1], "function": _for_numba(function)})
+    return _cached(late, f"{digest(function)}-{_kind_stamp(kind)}")
 
 
 def _with_kept(address: int, *others: Any) -> Any:
@@ -209,14 +211,29 @@ def _closed(function: Callable[..., Any], /, **names: Any) -> types.FunctionType
     return twin
 
 
-def _cached(twin: types.FunctionType, name: str, **options: bool) -> Any:
+class _Late(NamedTuple):
+    """A function, and what gives the kernels that it uses: only who compiles it makes them, for that takes a while."""
+
+    twin: Any  # a types.FunctionType, which type checkers bind as a method
+    used: Callable[[], dict[str, Any]]
+
+    def complete(self) -> types.FunctionType:
+        """Return the function with all that it uses: globals, and enclosed variables (its closure)."""
+        used, twin = self.used(), self.twin
+        twin.__globals__.update(used)
+        for name, cell in zip(twin.__code__.co_freevars, twin.__closure__ or (), strict=True):
+            cell.cell_contents = used[name]
+        return twin  # type: ignore[no-any-return]
+
+
+def _cached(late: _Late, name: str, **options: bool) -> Any:
     """Return a dispatcher whose machine code is kept in the cache folder of this name.
 
     numba keys its cache by path, content and line of the source file too; the empty file in the folder takes its place,
     so that the digest alone decides, and an installation finds what a checkout compiled. It would also key by the bytes
     of enclosed values, which for a dispatcher differ in every process.
     """
-    numba = _numba()
+    numba, twin = _numba(), late.twin
     folder = _own_folder(name)
     source = folder / "kernel.py"
     source.touch()
@@ -228,12 +245,28 @@ def _cached(twin: types.FunctionType, name: str, **options: bool) -> Any:
     # numba numbers the files of a folder, one for each signature. Two processes that compile at once, each for another
     # signature, would write the same file, and the index might tell that it is for the one whose code it is not.
     kept._cache_file._data_name_pattern = f"{twin.__name__}-{token_hex(8)}.{{number:d}}.nbc"
+    load = kept.load_overload if options.get("_nrt") else kept._load_overload
+    kept.load_overload = partial(_loaded, kept, load, late)
     return dispatcher
+
+
+def _loaded(kept: Any, load: Callable[..., Any], late: _Late, *arguments: Any) -> Any:
+    """Return what the cache holds of a signature; where it holds nothing, make the function ready to be compiled.
+
+    numba's own way first imports all that it compiles with (scipy too, where there is one): a third of a second in each
+    process, for code that is there. The compiler imports it by itself; only code that counts references needs it.
+    """
+    with kept._guard_against_spurious_io_errors():
+        code = load(*arguments)
+    if code is None:
+        late.complete()
+    return code
 
 
 @cache
 def _inner(function: Callable[..., Any]) -> Any:
-    return _numba().njit(forceinline=True, **_OPTIONS)(_named(_twin(function), digest(function)))
+    twin = _twin(function).complete()
+    return _numba().njit(forceinline=True, **_OPTIONS)(_named(twin, digest(function)))
 
 
 def _named(twin: types.FunctionType, name: str) -> types.FunctionType:
@@ -246,18 +279,22 @@ def _named(twin: types.FunctionType, name: str) -> types.FunctionType:
     return twin
 
 
-def _twin(function: Callable[..., Any]) -> types.FunctionType:
+def _twin(function: Callable[..., Any]) -> _Late:
     """Return a copy of a kernel that uses dispatchers for kernels, and numbers for members of enumerations."""
     if not is_kernel(function):
         raise TypeError(f"{function.__qualname__} is not a kernel")
-    used = {name: _for_numba(value) if value is not function else value for name, value in _used(function).items()}
-    cells = tuple(types.CellType(used[name]) for name in function.__code__.co_freevars)
+    cells = tuple(types.CellType() for _ in function.__code__.co_freevars)
     twin = types.FunctionType(
-        function.__code__, {**function.__globals__, **used}, function.__name__, function.__defaults__, cells
+        function.__code__, dict(function.__globals__), function.__name__, function.__defaults__, cells
     )
     twin.__module__ = function.__module__
     twin.__qualname__ = function.__qualname__
-    return twin
+    return _Late(twin, lambda: _twins_of(function))
+
+
+def _twins_of(function: Callable[..., Any]) -> dict[str, Any]:
+    """Return what a kernel uses from outside, as its twin uses it."""
+    return {name: one if one is function else _for_numba(one) for name, one in _used(function).items()}
 
 
 def _for_numba(value: Any) -> Any:

@@ -5,13 +5,13 @@ vehicle that has leapt is told where its speed would have brought it, and comes 
 faster than its speed allows; its heading turns no faster than a car does. Who stands stays where it is told.
 """
 
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
 from simconsole.values.numerics.array_functions import cosine, sine
 from simconsole.world.roads.road_map import Array
-from simconsole.world.sumo_traffic.subscriptions import Found, Numbers, motion_of, moved_to
+from simconsole.world.sumo_traffic.subscriptions import MOTION, PLACE
 
 LEAP_M: Final = 0.1
 """Further than this from where its speed has brought it, a vehicle has leapt."""
@@ -28,27 +28,21 @@ LOST_M: Final = 15.0
 class Smooth:
     """Where vehicles are told to be, step after step."""
 
-    def __init__(self, numbers: Numbers, period_s: float) -> None:
-        """Take the numbers of SUMO's names, and how long a step is."""
-        self._numbers, self._period_s = numbers, period_s
-        self._known = np.zeros(0)  # whose rows these are, ascending
+    def __init__(self, period_s: float) -> None:
+        """Take how long a step is."""
+        self._period_s = period_s
+        self._known = np.zeros(0)  # whose rows these are
         self._was = np.zeros((0, 4))  # as SUMO had them: x, y, angle, speed
         self._told = np.zeros((0, 3))  # as they were told: x, y, angle
 
-    def step(self, vehicles: Found) -> Found:
-        """Return vehicles as they are told after SUMO's step, by their names; those that did not leap as they are."""
-        names = sorted(vehicles, key=lambda name: self._numbers.of(False, name))
-        numbers = np.array([self._numbers.of(False, name) for name in names])
-        now = np.array([motion_of(vehicles[name]) for name in names]).reshape(-1, 4)
-        told = now[:, :3].copy()
+    def step(self, rows: Array) -> None:
+        """Put the vehicles of `subscriptions.VehicleReader` after SUMO's step where they are told to be."""
+        numbers, now, told = rows[:, 0], rows[:, MOTION].copy(), rows[:, PLACE].copy()
         both, here, there = np.intersect1d(numbers, self._known, assume_unique=True, return_indices=True)
         if len(both):
             told[here] = followed(self._was[there], self._told[there], now[here], self._period_s)
         self._known, self._was, self._told = numbers, now, told
-        found: dict[str, Any] = dict(vehicles)
-        for place in np.flatnonzero((told != now[:, :3]).any(axis=1)).tolist():
-            found[names[place]] = moved_to(vehicles[names[place]], *told[place].tolist())
-        return found
+        rows[:, PLACE] = told
 
 
 def followed(was: Array, told: Array, now: Array, period_s: float) -> Array:

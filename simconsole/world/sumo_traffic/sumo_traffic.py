@@ -14,11 +14,19 @@ from simconsole.world.roads.lane_graph import Leg
 from simconsole.world.roads.road_map import Array, RoadMap
 from simconsole.world.rules.running_signals import RunningSignals
 from simconsole.world.sumo_traffic.demand import demand
-from simconsole.world.sumo_traffic.ego import NO_CHECKS, Ego, is_ours
+from simconsole.world.sumo_traffic.ego import NO_CHECKS, Ego
 from simconsole.world.sumo_traffic.engines import KEY, open_engine, said_by
 from simconsole.world.sumo_traffic.places import Bumper
 from simconsole.world.sumo_traffic.smooth import Smooth
-from simconsole.world.sumo_traffic.subscriptions import Found, Numbers, SignalReader, position_of, road_users
+from simconsole.world.sumo_traffic.subscriptions import (
+    Found,
+    Numbers,
+    SignalReader,
+    VehicleReader,
+    people_rows,
+    position_of,
+    road_users,
+)
 from simconsole.world.traffic.road_users import CAPACITY, NOBODY, Box
 
 STOPPING_MPS2: Final = 6.0
@@ -60,7 +68,7 @@ class SumoTraffic:
         self.ego_error_m = 0.0
         several = len(around.egos) > 1
         self._numbers, self._users = Numbers(len(around.egos) if several else 0), [NOBODY] * len(around.egos)
-        self._smooth = Smooth(self._numbers, self.period_s)
+        self._smooth = Smooth(self.period_s)
         self._crashed: dict[str, float] = {}
         with ExitStack() as stack:
             folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="simconsole-sumo-")))
@@ -130,9 +138,11 @@ class SumoTraffic:
             raise ProfileError(f"{KEY}.address: value with steps of {step_s:g} s: {self.period_s:g} s")
         for _ in range(round(self._profile.warm_up_s / self.period_s)):
             sumo.simulationStep()
+        self._vehicles = VehicleReader(sumo, self._numbers)
         self._reader = SignalReader(sumo, [one.id for one in around.road_map.signals], around.tick_hz)
         radius_m = self._profile.radius_m
         self._egos = [Ego(sumo, around.road_map, around.legs, radius_m, number) for number in range(len(boxes))]
+        self._own = {ego.name for ego in self._egos}
         for ego, box in zip(self._egos, boxes, strict=True):
             ego.begin(box)
         # The step before the drive: what is there at tick 0.
@@ -144,21 +154,25 @@ class SumoTraffic:
         self._brake()
         self._sumo.simulationStep()
         seen: list[Found] = [self._sumo.vehicle.getContextSubscriptionResults(ego.name) for ego in self._egos]
-        told = self._smooth.step({name: one[name] for one in seen for name in one if not is_ours(name)})
+        others = {
+            name: one[name] for name in sorted(set[str]().union(*seen) - self._own) for one in seen if name in one
+        }
+        rows = self._vehicles.rows(others)
+        self._smooth.step(rows)
         self._users = []
         for ego, place, found in zip(self._egos, places, seen, strict=True):
             own = found.get(ego.name)  # off the road it is not among those round it
             x_m, y_m = self._sumo.vehicle.getPosition(ego.name) if own is None else position_of(own)
             self.ego_error_m = max(self.ego_error_m, math.hypot(x_m - place.x_m, y_m - place.y_m))
-            self._users.append(self._read(ego, place, {name: told[name] for name in found if name in told}))
+            self._users.append(self._read(ego, place, rows[[name in found for name in others]]))
         self.signals.take(self._reader.read(self._start_s))
 
-    def _read(self, ego: Ego, place: Bumper, vehicles: Found) -> Array:
+    def _read(self, ego: Ego, place: Bumper, vehicles: Array) -> Array:
         """Return the vehicles round an ego, and the people."""
         around = self._around
-        people: Found = self._sumo.poi.getContextSubscriptionResults(ego.name)
+        people = people_rows(self._sumo.poi.getContextSubscriptionResults(ego.name), self._numbers)
         room = CAPACITY + 1 - len(self._egos)  # for the others of ours
-        users = road_users(vehicles, people, self._numbers, around.road_map.moved_m, (place.x_m, place.y_m), room)
+        users = road_users(vehicles, people, around.road_map.moved_m, (place.x_m, place.y_m), room)
         if around.ground is not None and len(users):
             users[:, 9] = spline_at(around.ground, 0, users[:, 2], users[:, 3])
         return users

@@ -96,3 +96,19 @@ def test_acts_belong_to_the_platform_that_was_operated(ports: tuple[LockstepBrid
     second.console.operator.operate({"act": "mark", "note": "here"})
     assert first.take_acts() == []
     assert b"here" in second.take_acts()[0]
+
+
+def test_all_are_asked_before_an_answer_is_waited_for(
+    ports: tuple[LockstepBridge, list[LockstepPort]], snapshot: Callable[..., Any]
+) -> None:
+    bridge, (first, second) = ports
+    with BridgeClient(bridge.url) as one, beside(answering(bridge.url, "/b", 1, [])):
+        one.subscribe("/a/odom", "nav_msgs/Odometry")  # hears, and says nothing
+        with beside(lambda: one.connect(PATIENCE_S)):
+            assert bridge.wait_for_client(PATIENCE_S, [first.console, second.console])
+        asked = [port.ask(snapshot(5)) for port in (first, second)]
+        assert not asked[0].is_settled
+        assert second.hear(asked[1:], PATIENCE_S, lambda: False) == [True]
+        assert first.hear(asked, 0.02, lambda: False) == [False, True]
+        assert second.take(6)[0].speed_mps == 2.0
+        assert first.hear(asked, PATIENCE_S, lambda: True) == [False, True], "nor longer than until it is to stop"

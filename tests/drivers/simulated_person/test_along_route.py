@@ -3,6 +3,7 @@
 import math
 from functools import cache
 
+import msgspec
 import pytest
 
 from simconsole.drivers.simulated_person.along_route import COAST_MPS2, FULL_BRAKE_MPS2, HOLD_BRAKE, AlongRoute
@@ -14,6 +15,7 @@ from simconsole.profiles.person import PersonPlan, RoadHabits, When
 from simconsole.values.signals import Mode
 from simconsole.world.kinds.worlds import open_world
 from simconsole.world.route import Route
+from simconsole.world.rules.speed_advice import DOWN_MPS2
 
 HZ = 250
 EXACT = RoadHabits(aim_deviation_m=0.0, hand_deviation_deg=0.0)
@@ -104,6 +106,18 @@ def test_a_car_on_the_way_stops_before_the_line_although_the_light_is_seen_late(
         s_m += speed_mps / HZ
     assert speed_mps < 0.05
     assert 0.5 < line_m - s_m < EXACT.gap_m + 2.0
+
+
+def test_advice_is_followed_gently_once_the_person_has_reacted_and_never_drives_faster() -> None:
+    seated, slower = Seated(), Situation(advised_mps=8.0)
+    free = seated.pace(100.0, 12.0)
+    assert seated.pace(100.0, 12.0, slower, 0.7 * EXACT.reaction_s) == free
+    followed = seated.pace(100.0, 12.0, slower, 0.5 * EXACT.reaction_s)
+    assert followed.brake == pytest.approx((DOWN_MPS2 - COAST_MPS2) / FULL_BRAKE_MPS2)
+    assert Seated().pace(100.0, 8.0, slower) == Pace(8.0, 0.0)
+    assert Seated().pace(100.0, 12.0, Situation(advised_mps=30.0)) == free
+    stubborn = PersonPlan(along="route", cruise_kmh=130.0, road=msgspec.structs.replace(EXACT, follows_advice=False))
+    assert Seated(stubborn).pace(100.0, 12.0, slower) == free
 
 
 def test_small_decelerations_need_no_brake() -> None:

@@ -4,9 +4,10 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from simconsole.evaluation.metrics.table import drive_of, recorded_drive, runs
+from simconsole.evaluation.metrics import table
+from simconsole.evaluation.metrics.table import drive_of, read_at_once, recorded_drive, runs
 from simconsole.recording.log_header import LogHeader, vector_stream
-from simconsole.recording.reading import Block, places
+from simconsole.recording.reading import Block, LogTable, gathered, places
 from simconsole.values.errors import RecordingError
 
 
@@ -42,10 +43,13 @@ class Reader:
         streams = (vector_stream(("a", "b"), 0),)
         self.header = LogHeader(tick_hz=50, streams=streams, console_version="", source_sha256="", session_sha256="")
         self.rows = np.arange(2.0 * count).reshape(count, 2)
-        self.passes: list[Sequence[str]] = []
+        self.passes: list[Sequence[str] | None] = []
         self._size = size
 
-    def blocks(self, columns: Sequence[str]) -> Iterator[Block]:
+    def table(self) -> LogTable:
+        return gathered(self.header, None, self.blocks(None))
+
+    def blocks(self, columns: Sequence[str] | None) -> Iterator[Block]:
         self.passes.append(columns)
         at = places(self.header, columns)
         for start in range(0, len(self.rows), self._size):
@@ -61,7 +65,7 @@ def test_a_recorded_drive_is_read_column_by_column_and_says_how_far_it_is() -> N
     assert drive.column("b").tolist() == reader.rows[:, 1].tolist()
     b, a = drive.columns("b", "a")
     assert (a.tolist(), b.tolist()) == (reader.rows[:, 0].tolist(), reader.rows[:, 1].tolist())
-    assert [tuple(names) for names in reader.passes] == [(), ("b",), ("b", "a")]
+    assert reader.passes == [(), ("b",), ("b", "a")]
     assert told == pytest.approx([1.0, 1.4, 1.8, 2.0, 2.4, 2.8, 3.0])
     with pytest.raises(RecordingError, match="no column 'c'"):
         drive.column("c")
@@ -78,6 +82,17 @@ def test_a_recording_that_grows_or_shrinks_while_it_is_read() -> None:
         drive.column("a")
     with pytest.raises(RecordingError, match="0 ticks: nothing to report"):
         recorded_drive(cast("Any", Reader(0, 4)))
+
+
+def test_a_short_drive_is_read_at_once_and_a_long_one_as_it_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    reader: Any = Reader(10, 4)
+    drive = read_at_once(reader, 9)
+    assert (drive.ticks, drive.tick_hz, drive.first_tick) == (9, 50, 11)
+    assert [drive.column(name).tolist() for name in "ab"] == reader.rows[:9].T.tolist()
+    assert reader.passes == [None]
+    monkeypatch.setattr(table, "IN_MEMORY", 19)
+    assert read_at_once(reader, 10).column("b").tolist() == reader.rows[:, 1].tolist()
+    assert reader.passes[1:] == [(), ("b",)]
 
 
 @pytest.mark.parametrize("size", [1, 3, 4, 10, 100])

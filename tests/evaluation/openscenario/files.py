@@ -1,5 +1,7 @@
 """OpenSCENARIO files as scenariogeneration writes them: what is understood, and twenty with what is not."""
 
+import random
+import re
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -251,3 +253,57 @@ NOT_UNDERSTOOD: Final[dict[str, tuple[str, Callable[[], bytes]]]] = {
 def all_files() -> tuple[bytes, ...]:
     """Return all files."""
     return (*(make() for make in UNDERSTOOD.values()), *(make() for _, make in NOT_UNDERSTOOD.values()))
+
+
+def file_of(*inner: str, within: str = "Deterministic") -> bytes:
+    """A file of parameter values, by hand."""
+    values = f"<{within}>{''.join(inner)}</{within}>"
+    head = '<FileHeader revMajor="1"/><ParameterValueDistribution><ScenarioFile filepath="a.xosc"/>'
+    return f"<OpenSCENARIO>{head}{values}</ParameterValueDistribution></OpenSCENARIO>".encode()
+
+
+def single(inner: str, name: str = "speed") -> str:
+    tag = "DeterministicSingleParameterDistribution"
+    return f'<{tag} parameterName="{name}">{inner}</{tag}>'
+
+
+def span(low: float, high: float, step: float) -> str:
+    limits = f'<Range lowerLimit="{low}" upperLimit="{high}"/>'
+    return single(f'<DistributionRange stepWidth="{step}">{limits}</DistributionRange>')
+
+
+WORDS: Final = ("", "nan", "inf", "-1e9", "1e300", "zwölf", "$speed", "$no", "${1+1}", "true", "0", "\x7f", "9" * 400)
+
+
+def mutated(content: bytes, rng: random.Random) -> bytes:
+    """Return a file after one thing that happens to files: an edit, a loss, a copy."""
+    text = content.decode()
+    how = rng.randrange(8)
+    tags = [match.span() for match in re.finditer(r"<[^>]+>", text)]
+    values = [match.span(1) for match in re.finditer(r'="([^"]*)"', text)]
+    if how == 0:  # a value that is another
+        start, end = rng.choice(values)
+        return (text[:start] + rng.choice(WORDS) + text[end:]).encode()
+    if how == 1:  # an element without its begin or end
+        start, end = rng.choice(tags)
+        return (text[:start] + text[end:]).encode()
+    if how == 2:  # an element twice
+        start, end = rng.choice([span for span in tags if text[span[1] - 2] == "/"])
+        return (text[:end] + text[start:end] + text[end:]).encode()
+    if how == 3:  # an element with another name
+        start, end = rng.choice([span for span in tags if text[span[1] - 2] == "/"])
+        return (text[:start] + re.sub(r"<\w+", "<Elsewhere", text[start:end]) + text[end:]).encode()
+    if how == 4:  # an attribute that is gone
+        start, end = rng.choice([match.span() for match in re.finditer(r' \w+="[^"]*"', text)])
+        return (text[:start] + text[end:]).encode()
+    if how == 5:  # a file that was cut off
+        return content[: rng.randrange(len(content))]
+    if how == 6:  # a byte that is another
+        at = rng.randrange(len(content))
+        return content[:at] + bytes([rng.randrange(256)]) + content[at + 1 :]
+    start, end = rng.choice([span for span in tags if text[span[1] - 2] == "/"])  # an element that is gone
+    return (text[:start] + text[end:]).encode()
+
+
+NAMED: Final = re.compile(r"made\.xosc: (line \d+: (<\w+>|not XML): |<\w+>: )")
+"""How a refusal begins: with the element and its line; of a file that is none or lacks a part, with what it is."""

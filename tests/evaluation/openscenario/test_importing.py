@@ -5,45 +5,12 @@ import re
 from typing import Final
 
 import pytest
-from scenariogeneration import xosc
 
 from simconsole.evaluation.openscenario.importing import imported
 from simconsole.values.errors import ProfileError
 from tests.evaluation.in_memory import drive_scenario
-from tests.evaluation.openscenario.files import NOT_UNDERSTOOD, UNDERSTOOD, all_files, brakes, by, written
+from tests.evaluation.openscenario.files import NAMED, NOT_UNDERSTOOD, UNDERSTOOD, all_files, mutated, written
 from tests.samples import Sample
-
-WORDS: Final = ("", "nan", "inf", "-1e9", "1e300", "zwölf", "$speed", "$no", "${1+1}", "true", "0", "\x7f", "9" * 400)
-
-
-def mutated(content: bytes, rng: random.Random) -> bytes:
-    """Return a file after one thing that happens to files: an edit, a loss, a copy."""
-    text = content.decode()
-    how = rng.randrange(8)
-    tags = [match.span() for match in re.finditer(r"<[^>]+>", text)]
-    values = [match.span(1) for match in re.finditer(r'="([^"]*)"', text)]
-    if how == 0:  # a value that is another
-        start, end = rng.choice(values)
-        return (text[:start] + rng.choice(WORDS) + text[end:]).encode()
-    if how == 1:  # an element without its begin or end
-        start, end = rng.choice(tags)
-        return (text[:start] + text[end:]).encode()
-    if how == 2:  # an element twice
-        start, end = rng.choice([span for span in tags if text[span[1] - 2] == "/"])
-        return (text[:end] + text[start:end] + text[end:]).encode()
-    if how == 3:  # an element with another name
-        start, end = rng.choice([span for span in tags if text[span[1] - 2] == "/"])
-        return (text[:start] + re.sub(r"<\w+", "<Elsewhere", text[start:end]) + text[end:]).encode()
-    if how == 4:  # an attribute that is gone
-        start, end = rng.choice([match.span() for match in re.finditer(r' \w+="[^"]*"', text)])
-        return (text[:start] + text[end:]).encode()
-    if how == 5:  # a file that was cut off
-        return content[: rng.randrange(len(content))]
-    if how == 6:  # a byte that is another
-        at = rng.randrange(len(content))
-        return content[:at] + bytes([rng.randrange(256)]) + content[at + 1 :]
-    start, end = rng.choice([span for span in tags if text[span[1] - 2] == "/"])  # an element that is gone
-    return (text[:start] + text[end:]).encode()
 
 
 def refusal(content: bytes, partly: bool) -> str | None:
@@ -77,10 +44,6 @@ def test_what_is_not_understood_is_refused_by_its_name_and_line(name: str) -> No
     assert "\n" not in str(error.value)
     found = imported(make(), "made.xosc", partly=True)
     assert element in [one.element for one in found.left if one.changes]
-
-
-NAMED: Final = re.compile(r"made\.xosc: (line \d+: (<\w+>|not XML): |<\w+>: )")
-"""How a refusal begins: with the element and its line; of a file that is none or lacks a part, with what it is."""
 
 
 def test_mutations_are_imported_or_refused_with_the_element(sample: Sample) -> None:
@@ -140,46 +103,6 @@ def test_the_consoles_vehicle_is_named_or_asked_for() -> None:
     assert [actor.name for actor in imported(content, "made.xosc", ego="Mine").profile.actors] == ["Lead"]
 
 
-@pytest.mark.parametrize("priority", ["skip", "parallel", "override"])
-def test_a_priority_that_nobody_keeps_to_is_refused(priority: str) -> None:
-    """One event alone has nobody to skip; of several, each act replaces the one before."""
-    alone = written(brakes()).replace(b'priority="override"', f'priority="{priority}"'.encode())
-    assert len(imported(alone, "made.xosc").profile.actors[0].acts) == 1
-    several = written(brakes(), events=2).replace(b'priority="override"', f'priority="{priority}"'.encode())
-    if priority == "override":
-        assert len(imported(several, "made.xosc").profile.actors[0].acts) == 2
-        return
-    with pytest.raises(ProfileError, match="<Event>: not understood: priority override, of several events"):
-        imported(several, "made.xosc")
-    assert imported(several, "made.xosc", partly=True).profile.actors[0].acts == ()
-
-
-@pytest.mark.parametrize(
-    ("name", "edge", "told"),
-    [
-        ("own speed", "falling", "conditionEdge rising or none"),
-        ("own speed", "risingOrFalling", "conditionEdge rising or none"),
-        ("a speed below", "none", "conditionEdge rising, of a speed below a limit"),
-        ("a condition and a time", "rising", "conditionEdge none, of a time beside another condition"),
-    ],
-)
-def test_an_edge_that_no_trigger_has_is_refused(name: str, edge: str, told: str) -> None:
-    slow = xosc.SpeedCondition(5, xosc.Rule.lessThan)
-    content = written(brakes(), by(slow)) if name == "a speed below" else UNDERSTOOD[name]()
-    before = b"none" if name == "a condition and a time" else b"rising"
-    assert imported(content, "made.xosc").profile.actors[0].acts
-    content = content.replace(b'conditionEdge="' + before, f'conditionEdge="{edge}'.encode())
-    with pytest.raises(ProfileError, match=f"<Condition>: not understood: {told}"):
-        imported(content, "made.xosc")
-    assert imported(content, "made.xosc", partly=True).profile.actors[0].acts == ()
-
-
-def test_edges_arrive() -> None:
-    rises = imported(UNDERSTOOD["a distance"](), "made.xosc").profile.actors[0].acts[0]
-    content = UNDERSTOOD["a distance"]().replace(b'"rising"', b'"none"')
-    assert (rises.rising, imported(content, "made.xosc").profile.actors[0].acts[0].rising) == (True, False)
-
-
 def without_a_place(content: bytes, *, beside: bytes = b"") -> bytes:
     """Return a file whose Lead is put nowhere, with another element that is not understood."""
     place = re.compile(
@@ -229,24 +152,6 @@ def test_a_vehicle_without_a_place_is_listed_too() -> None:
     )
     found = imported(content.replace(b"<RoadNetwork", b"<Elsewhere/><RoadNetwork"), "made.xosc", partly=True)
     assert [one.element for one in found.left if one.changes] == ["Elsewhere", "ScenarioObject"]
-
-
-def test_a_parameter_counts_in_the_story_or_maneuver_that_declares_it() -> None:
-    def speeds_kmh(content: bytes, **given: str) -> list[float | None]:
-        return [act.speed_kmh for act in imported(content, "made.xosc", parameters=given).profile.actors[0].acts]
-
-    asked = b'AbsoluteTargetSpeed value="$speed"'
-    content = UNDERSTOOD["speed by time"]().replace(b'AbsoluteTargetSpeed value="0.0"', asked)
-    assert speeds_kmh(content) == [pytest.approx(21.6)]
-    assert speeds_kmh(content, speed="2") == [pytest.approx(7.2)]
-    own = b'<ParameterDeclaration name="speed" parameterType="double" value="%s"/>'
-    own = b"<ParameterDeclarations>" + own + b"</ParameterDeclarations>"
-    in_story = content.replace(b'<Story name="story">', b'<Story name="story">' + own % b"3")
-    assert speeds_kmh(in_story, speed="2") == [pytest.approx(10.8)]
-    in_maneuver = in_story.replace(b'<Maneuver name="maneuver">', b'<Maneuver name="maneuver">' + own % b"4")
-    assert speeds_kmh(in_maneuver) == [pytest.approx(14.4)]
-    later = in_story.replace(b"<StopTrigger>", b'<Story name="late"/><StopTrigger>', 1)
-    assert speeds_kmh(later) == [pytest.approx(10.8)]
 
 
 def test_a_parameter_that_is_not_declared_and_a_file_of_values_are_refused() -> None:

@@ -14,6 +14,8 @@ from simconsole.recording.bundles.bundle import add_export, open_bundle
 from simconsole.recording.bundles.manifest import MANIFEST, read_manifest, write_manifest
 from simconsole.recording.bundles.signing import make_key, sign
 from simconsole.recording.bundles.verification import verify
+from simconsole.session.lifecycle import drive
+from simconsole.session.resolution import load_session, override, resolve
 from simconsole.session.scene_worker import LIVE_SCENE
 from simconsole.values.errors import RecordingError, WorkerError
 
@@ -155,3 +157,23 @@ def test_a_report_without_memory_changes_nothing_of_the_drives_result(tmp_path: 
     assert f"report and scene  not written: {failure}" in text
     assert (verify(bundle), open_bundle(bundle).manifest.digest) == ([], digest)
     assert sorted(path.name for path in bundle.iterdir()) == ["drive.log", "manifest.json", "session.json"]
+
+
+def test_the_report_of_a_robot_tells_of_a_robot(tmp_path: Path) -> None:
+    script = tmp_path / "script.yaml"
+    forward = "{time_s: 0.3, throttle: 1.0, brake: 0, clutch: 0, hand_wheel_deg: 0, gear: 0}"
+    script.write_text(f"schema: 1\npoints:\n  - {forward.replace('0.3', '0.0').replace('1.0', '0')}\n  - {forward}\n")
+    session = override(
+        load_session("turtlebot3_burger"),
+        scenario={"duration_s": 2.0},
+        outputs={"bridge": None, "hud": None, "scene": None},
+        mode={"pacing": "free"},
+        devices={"driver": f"script:{script}"},
+    )
+    folder = drive(resolve(session), tmp_path / "bundle").folder
+    found = write_report(folder)
+    page = (folder / REPORT).read_text()
+    assert (found["speed_limit_kmh"], found["above_limit_s"]) == (None, 0.0)
+    assert f"<b>{found['distance_m']:.2f} m</b>" in page
+    assert "<th>times that it touched something</th><td>0</td>" in page
+    assert "km/h</td></tr>" not in page.split("<h2>Drive</h2>")[1], "no share of a car's torque"

@@ -55,3 +55,19 @@ def test_start_and_end_are_where_the_drive_began_and_ended(known: Any) -> None:
     for label, tick in (("start", 0), ("end", -1)):
         (mark,) = lines(axes, label)
         assert mark.get_xdata()[0] == pytest.approx(known.vectors[tick, known.columns.index("vehicle.x_m")])
+
+
+def test_among_walls_the_way_is_drawn_as_it_was_driven(known: Any) -> None:
+    drive = drive_of(*known)
+    way = track(drive, None)
+    figure = blank()
+    walls = [np.array([[0.0, 0.0, 0.5], [4.0, 0.0, 0.5]]), np.array([[1.0, 1.0, 0.5], [1.0, 2.0, 0.5]])]
+    draw_map(figure, drive, way, mode_changes(drive, way), None, walls)
+    (axes,) = figure.axes
+    (named,) = lines(axes, "walls")
+    assert named.get_xdata().tolist() == [0.0, 4.0]
+    assert any(line.get_ydata().tolist() == [1.0, 2.0] for line in axes.get_lines())
+    plain = axes_of(known, None)
+    points = [len(lines(one, "driven by the autopilot")[0].get_xdata()) for one in (axes, plain)]
+    assert points[0] > 4 * points[1], "each tick, 20 cm apart"
+    assert "theoretical" not in axes.get_title(loc="left")

@@ -78,3 +78,15 @@ def test_hand_over_and_take_over_are_marked_and_nothing_else(known: Any, course:
     axes = axes_of(known, course)
     upright = [line for line in axes[3].get_lines() if len(set(line.get_xdata())) == 1]
     assert len(upright) == 2
+
+
+def test_of_a_robot_there_are_speed_yaw_rate_and_mode(known: Any) -> None:
+    drive = drive_of(*known)
+    way = track(drive, None)
+    figure = blank()
+    draw_traces(figure, drive, way, mode_changes(drive, way), None, robot=True)
+    assert [axes.get_ylabel() for axes in figure.axes] == ["speed / km/h", "yaw rate / deg/s", "mode"]
+    (turning,) = (line for line in figure.axes[1].get_lines() if len(line.get_xdata()) > 2)
+    assert np.abs(turning.get_ydata()).max() == pytest.approx(
+        np.degrees(np.abs(known.vectors[:, known.columns.index("vehicle.yaw_rate_radps")]).max())
+    )

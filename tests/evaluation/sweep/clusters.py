@@ -51,11 +51,12 @@ def cluster(folder: Path, workers: int) -> Iterator[Cluster]:
 
 
 def pool_workers_of(pid: int) -> list[int]:
-    """The processes that drive for a process."""
-    children = [child for task in Path(f"/proc/{pid}/task").iterdir() for child in read(task / "children").split()]
-    return [
-        int(child) for child in children if b"evaluation.sweep.worker" in read(Path(f"/proc/{child.decode()}/cmdline"))
+    """The processes that drive for a process: the first, then its copies."""
+    children = [child for task in Path(f"/proc/{pid}/task").glob("*") for child in read(task / "children").split()]
+    found = [
+        int(child) for child in children if b"evaluation.sweep.worker" in read(Path(f"/proc/{int(child)}/cmdline"))
     ]
+    return [*found, *(copy for one in found for copy in pool_workers_of(one))]
 
 
 def read(path: Path) -> bytes:

@@ -7,6 +7,9 @@ import msgspec
 import pytest
 
 from simconsole.bridge.client.bridge_client import BridgeClient
+from simconsole.evaluation.metrics.drive_metrics import metrics
+from simconsole.evaluation.metrics.table import recorded_drive
+from simconsole.evaluation.report.page import page
 from simconsole.processes.byte_slot import ByteSlot
 from simconsole.processes.worker import WorkerSpec, load_worker
 from simconsole.profiles.files.vehicle_files import load_vehicle
@@ -29,28 +32,37 @@ from simconsole.session.resolution import load_session, override, resolve
 from simconsole.values.errors import ProfileError
 from simconsole.values.units import tick_time_ns
 from simconsole.world.rules.speed_advice import NO_ADVICE, STOP, Advice, Advised, from_bytes, to_bytes
+from tests.paths import ROOT
 
 BAND = Advice(Advised.SPEED, 8.0, 11.0, 10.5)
 SESSION = """\
 schema: 1
-environment: {world: urban_signals}
-scenario: {vehicle: hatchback, duration_s: 40, start: {x_m: 150}}
+environment: {world: world.yaml}
+scenario: {vehicle: hatchback, duration_s: 40, start: {x_m: 240}}
 features: {speed_advice: true}
 outputs: {hud: null, scene: null, report: false, bridge: BRIDGE}
 devices:
   driver: virtual
-  person: {title: drives, sit_s: 0.3, cruise_kmh: 40, along: route, seed: 1}
+  person: {title: drives, sit_s: 0.3, along: route, seed: 1}
 mode: {pacing: realtime, tick_hz: 250}
 """
 
 
+GREEN_S = 30
+"""The light on the way, 219 m ahead, is red until then; at the limit the car would be there 10 s before."""
+
+
 def session(folder: Path, bridge: str = "{port: 0}") -> Path:
+    shipped = ROOT / "profiles" / "worlds" / "urban_signals"
+    net, world = shipped.with_suffix(".net.xml").read_text(), shipped.with_suffix(".yaml").read_text()
+    (folder / "urban_signals.net.xml").write_text(net.replace('offset="0"', f'offset="{GREEN_S}"'))
+    (folder / "world.yaml").write_text(world)
     path = folder / "session.yaml"
     path.write_text(SESSION.replace("BRIDGE", bridge))
     return path
 
 
-def test_a_person_is_advised_by_topics_and_the_log_keeps_it(tmp_path: Path) -> None:
+def test_a_person_is_advised_by_topics_and_drives_so_and_the_report_tells_what_that_brought(tmp_path: Path) -> None:
     result = drive(resolve(load_session(str(session(tmp_path)))), tmp_path / "bundle")
     bundle = open_bundle(result.folder)
     told = [(message.tick, from_bytes(message.content)) for message in bundle.log.messages(ADVICE)]
@@ -60,6 +72,16 @@ def test_a_person_is_advised_by_topics_and_the_log_keeps_it(tmp_path: Path) -> N
     assert all(5.0 <= one.low_mps <= one.target_mps <= limit_mps for _, one in told if one.kind is Advised.SPEED)
     assert result.summary["worker_restarts"] == {"bridge": 0, "advice": 0}
     assert replay_bundle(result.folder).hashes_equal
+    found = metrics(recorded_drive(bundle.log), None)
+    advice = found["speed_advice"]
+    assert advice["lights"] == advice["advised"] == advice["followed"]["lights"] == 1
+    assert advice["compliance"] > 0.8
+    assert (advice["followed"]["stops"], advice["followed"]["waiting_s"]) == (0.0, 0.0)
+    assert advice["followed"]["time_loss_s"] > 5.0, "it came no earlier than the green"
+    assert not bundle.log.table().column("rules.red_light").any()
+    html = page("t", found, (), {}, {})
+    assert "Advised before 1 of 1 lights" in html
+    assert f"{100.0 * advice['compliance']:.0f} % of the time" in html
 
 
 def test_advice_without_topics_is_refused(tmp_path: Path) -> None:

@@ -11,7 +11,6 @@ import simconsole
 from simconsole.cli.recordings import replay
 from simconsole.evaluation.report.exports import REPORT, write_exports
 from simconsole.profiles.files.vehicle_files import load_vehicle
-from simconsole.profiles.vehicle import OwnProfile
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.verification import examine
 from simconsole.values.errors import ProfileError, VehicleError
@@ -147,18 +146,3 @@ def test_a_unit_that_fails_ends_the_drive_with_one_line(version: Version, tmp_pa
     like = platform(profile)
     expected = tick(like, tick(like, first, 0.0), 0.001)
     assert not difference(tick(on, second, 0.001), expected), "from where it was before it failed"
-
-
-@pytest.mark.parametrize("version", [2, 3])
-def test_a_unit_that_cannot_begin_is_refused(version: Version, tmp_path: Path) -> None:
-    with pytest.raises(VehicleError, match=rf"car{version}\.fmu: at 0 ms: "):
-        platform(build(tmp_path, version, speed_mps=-1.0))
-
-
-def test_another_file_than_the_recorded_one_is_refused(tmp_path: Path) -> None:
-    recorded = load_vehicle(str(build(tmp_path, 2)))
-    assert isinstance(recorded, OwnProfile)
-    with (tmp_path / "car2.fmu").open("ab") as file:
-        file.write(b"more")
-    with pytest.raises(ProfileError, match="another file than when the drive was recorded"):
-        build_platform(recorded, Pose(0.0, 0.0, 0.0), LEVEL)
