@@ -162,18 +162,19 @@ def _driven(net: bytes, vehicles: int, given: argparse.Namespace, *, subscribes:
         share = 0.1 + 0.8 * step / given.steps
         return Box(x + share * (to_x - x), y + share * (to_y - y), heading, 0.8 * way_m / duration_s, 4.4, 1.8)
 
-    meter, opened = Meter(), sumo_traffic.open_engine
+    meter, opens = Meter(), vars(sumo_traffic)
+    opened = opens["open_engine"]
 
     def watched(*words: Any) -> Any:
         engine = opened(*words)
         return engine._replace(sumo=Watched(engine.sumo, meter, subscribes=subscribes))
 
     around = Surroundings(road_map=road_map, net=net, legs=(), tick_hz=_HZ, egos=(at(0),), duration_s=4.0 * duration_s)
-    sumo_traffic.open_engine = watched
+    opens["open_engine"] = watched
     try:
         traffic = SumoTraffic(profile, around)
     finally:
-        sumo_traffic.open_engine = opened
+        opens["open_engine"] = opened
     seen, meter.process = CAPACITY, traffic.process
     try:
         for step in range(given.steps):
