@@ -1,4 +1,4 @@
-from simconsole.bridge.console.input_slots import BridgeInputs, with_age
+from simconsole.bridge.console.input_slots import BridgeInputs, Question, with_age
 from simconsole.values.signals import NEVER_TICKS, NO_COMMAND, Event, RemoteCommand, RemoteKind
 
 COMMAND = NO_COMMAND._replace(kind=float(RemoteKind.SPEED), speed_mps=3.0, direction=0.0)
@@ -71,3 +71,28 @@ def test_age_from_a_monotonic_clock_in_whole_ticks() -> None:
     assert with_age(COMMAND, 1_000_000, 4_999_999, 250).age_ticks == 0.0
     assert with_age(COMMAND, 1_000_000, 5_000_000, 250).age_ticks == 1.0
     assert with_age(COMMAND, 5_000_000, 1_000_000, 250).age_ticks == 0.0
+
+
+def test_odometry_is_answered_by_a_newer_command_with_its_stamp_or_without_any() -> None:
+    inputs = BridgeInputs()
+    inputs.accept(COMMAND, 20, 0)
+    question = Question(inputs, inputs.command.sequence, 20)
+    assert not question.is_answered, "the command was there before"
+    inputs.accept(COMMAND, 10, 1)
+    assert not question.is_answered, "it answers what went out before"
+    inputs.accept(COMMAND, 20, 2)
+    assert question.is_answered
+    inputs.accept(COMMAND, None, 3)
+    assert question.is_answered
+    assert Question(inputs, inputs.command.sequence, None).is_answered, "nothing has gone out"
+
+
+def test_nothing_more_is_waited_for_once_the_commander_is_gone() -> None:
+    inputs = BridgeInputs()
+    inputs.accept(COMMAND, 20, 0)
+    question = Question(inputs, inputs.command.sequence, 30)
+    assert not question.is_settled
+    inputs.lose()
+    assert (question.is_settled, question.is_answered) == (True, False)
+    inputs.accept(COMMAND, 20, 1)
+    assert not question.is_settled, "another one commands, and may answer yet"
