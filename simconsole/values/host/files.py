@@ -2,6 +2,7 @@
 
 import errno
 import os
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -63,6 +64,23 @@ def replaced(path: Path) -> Iterator[Path]:
         with suppress(OSError):
             draft.unlink()
         raise
+
+
+@contextmanager
+def held_alone(path: Path) -> Iterator[None]:
+    """Hold a file (made where it is missing) that no other process or thread holds meanwhile; wait for who does.
+
+    The end of a process lets go of what it held. Does not wait on Windows. Raises OSError.
+    """
+    descriptor = os.open(path, _FILE, 0o644)
+    try:
+        if sys.platform != "win32":
+            import fcntl
+
+            fcntl.flock(descriptor, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(descriptor)
 
 
 def reserve(path: Path, size_bytes: int) -> None:

@@ -24,6 +24,7 @@ from typing import Any, Final, NamedTuple, TypeVar
 import numpy as np
 
 from simconsole.values.host import lowering
+from simconsole.values.host.files import held_alone
 from simconsole.values.kernels import forget, is_kernel, is_stage
 from simconsole.values.layout import Part, read, write
 
@@ -247,7 +248,18 @@ def _cached(late: _Late, name: str, **options: bool) -> Any:
     kept._cache_file._data_name_pattern = f"{twin.__name__}-{token_hex(8)}.{{number:d}}.nbc"
     load = kept.load_overload if options.get("_nrt") else kept._load_overload
     kept.load_overload = partial(_loaded, kept, load, late)
+    dispatcher.compile = partial(_alone, folder / "lock", dispatcher.compile)
     return dispatcher
+
+
+def _alone(lock: Path, compile_one: Callable[[Any], Any], signature: Any) -> Any:
+    """Compile or load one signature while no other process compiles the kernel: the second one then finds it compiled.
+
+    Processes that start together would each compile the same for many seconds. A kernel holds its own lock while it
+    waits for those of kernels that it calls, which never call it; numba's lock comes first, as it is one for all.
+    """
+    with import_module("numba.core.compiler_lock").global_compiler_lock, held_alone(lock):
+        return compile_one(signature)
 
 
 def _loaded(kept: Any, load: Callable[..., Any], late: _Late, *arguments: Any) -> Any:
@@ -266,7 +278,8 @@ def _loaded(kept: Any, load: Callable[..., Any], late: _Late, *arguments: Any) -
 @cache
 def _inner(function: Callable[..., Any]) -> Any:
     twin = _twin(function).complete()
-    return _numba().njit(forceinline=True, **_OPTIONS)(_named(twin, digest(function)))
+    options = {"pipeline_class": lowering.compiler_of_inlined(), "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+    return _numba().njit(forceinline=True, **options, **_OPTIONS)(_named(twin, digest(function)))
 
 
 def _named(twin: types.FunctionType, name: str) -> types.FunctionType:

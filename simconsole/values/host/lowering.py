@@ -1,5 +1,6 @@
-"""numba extensions: the kernel primitives that are no kernels themselves."""
+"""numba extensions: the kernel primitives that are no kernels themselves, and a compiler for what is inlined."""
 
+from functools import cache
 from importlib import import_module
 from typing import Any
 
@@ -11,6 +12,45 @@ def teach() -> None:
     """Register `kernels.forget`, `layout.read` and `layout.write` with numba; once in a process."""
     _teach_forget()
     _teach_parts()
+
+
+@cache
+def compiler_of_inlined() -> Any:
+    """Return numba's compiler (`pipeline_class`) for functions that stand in their callers' code and nowhere else.
+
+    numba optimises each function together with all that it calls, and makes machine code of it. Where all calls are
+    inlined, a function is optimised again in each caller, at each level up: that took half of a first drive's time to
+    compile. Here only the outermost function is optimised, once, with all that it has taken in.
+    """
+    codegen: Any = import_module("numba.core.codegen")
+    compiler: Any = import_module("numba.core.compiler")
+
+    class Unbound:
+        """No machine code, so no environment to bind to it."""
+
+        def set_env(self, name: str, environment: Any) -> None:
+            pass
+
+    class InlinedLibrary(codegen.JITCodeLibrary):  # type: ignore[misc]  # numba is not typed
+        """The code of one function, to be linked into its callers."""
+
+        codegen = Unbound()
+
+        def _optimize_final_module(self) -> None:
+            pass
+
+        def _finalize_final_module(self) -> None:
+            self._finalized = True
+
+        def get_pointer_to_function(self, name: str) -> int:
+            return 0
+
+    class InlinedCompiler(compiler.Compiler):  # type: ignore[misc]
+        def compile_extra(self, function: Any) -> Any:
+            self.state.library = InlinedLibrary(self.state.targetctx.codegen(), function.__qualname__)
+            return super().compile_extra(function)
+
+    return InlinedCompiler
 
 
 def size_of(kind: Any) -> int:

@@ -1,12 +1,13 @@
 """Files that are replaced at once: the old one or the new one, on disks that fill too, and never a draft beside it."""
 
 import errno
+import fcntl
 import os
 from pathlib import Path
 
 import pytest
 
-from simconsole.values.host.files import draft_of, give_back, replaced, reserve, write_atomically
+from simconsole.values.host.files import draft_of, give_back, held_alone, replaced, reserve, write_atomically
 
 
 @pytest.mark.parametrize("durable", [True, False])
@@ -76,3 +77,11 @@ def test_a_draft_that_fails_is_removed(tmp_path: Path) -> None:
     with pytest.raises(RuntimeError):
         fail()
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_file_that_is_held_is_nobody_elses_until_it_is_left(tmp_path: Path) -> None:
+    lock = tmp_path / "lock"
+    with held_alone(lock), lock.open("rb") as other, pytest.raises(BlockingIOError):
+        fcntl.flock(other, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    with lock.open("rb") as other:
+        fcntl.flock(other, fcntl.LOCK_EX | fcntl.LOCK_NB)

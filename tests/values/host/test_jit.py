@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+from numba.core.codegen import CPUCodeLibrary
 
 from simconsole.values.host import jit
 from simconsole.values.host.jit import compiled, digest, plain
@@ -254,6 +255,34 @@ def test_compiled_closure_is_found_by_another_process() -> None:
     command = [sys.executable, "-c", CALLS_A_CLOSURE]
     done = subprocess.run(command, capture_output=True, text=True, check=True, env=environment)
     assert done.stdout.split() == ["21.0", "1"]
+
+
+def test_what_is_inlined_is_optimised_in_its_caller_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    optimise, optimised = CPUCodeLibrary._optimize_final_module, []
+
+    def counted(library: Any) -> None:
+        optimised.append(library.name)
+        optimise(library)
+
+    monkeypatch.setattr(CPUCodeLibrary, "_optimize_final_module", counted)
+    both = make_both(scaled, make_curve(scaled, 3.0))
+    assert compiled(both)(1.0) == both(1.0) == 21.0
+    assert len(optimised) == 1
+
+
+def test_of_processes_that_start_together_one_compiles() -> None:
+    code = """
+from tests.values.host.test_jit import compiled, halved, quartered
+assert compiled(quartered)(8.0) == 4.0
+print(*(sum(compiled(each).stats.cache_misses.values()) for each in (quartered, halved)))
+"""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), *sys.path])}
+    running = [
+        subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, env=environment) for _ in range(3)
+    ]
+    said = [process.communicate()[0].split() for process in running]
+    assert [process.returncode for process in running] == [0, 0, 0]
+    assert sorted(misses for misses, _ in said) == [b"0", b"0", b"1"]
 
 
 def test_only_kernels_and_constants_are_accepted() -> None:
