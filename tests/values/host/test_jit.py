@@ -258,7 +258,8 @@ def test_compiled_closure_is_found_by_another_process() -> None:
 
 
 def test_what_is_inlined_is_optimised_in_its_caller_only(monkeypatch: pytest.MonkeyPatch) -> None:
-    optimise, optimised = CPUCodeLibrary._optimize_final_module, []
+    optimise: Any = CPUCodeLibrary._optimize_final_module
+    optimised: list[str] = []
 
     def counted(library: Any) -> None:
         optimised.append(library.name)
