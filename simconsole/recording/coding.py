@@ -23,7 +23,8 @@ Bits = NDArray[np.int64]
 def differences(bits: Bits, order: int) -> Bits:
     """Return differences of `order`; before its first value a column counts as 0. Undone by as many cumulative sums."""
     for _ in range(order):
-        bits = np.diff(bits, prepend=np.int64(0))
+        before, bits = bits, bits.copy()
+        bits[..., 1:] -= before[..., :-1]
     return bits
 
 

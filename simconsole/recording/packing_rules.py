@@ -1,13 +1,13 @@
 """Finds the rules by which a drive's columns are packed: one pass over its blocks, in constant memory. Pure."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from hashlib import blake2b
 from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from simconsole.recording.coding import MAX_DELAY, MAX_ORDER, Bits, delayed, differences, entropy_bits, length_bits
+from simconsole.recording.coding import MAX_DELAY, MAX_ORDER, Bits, differences, entropy_bits, length_bits
 from simconsole.recording.packing import READABLE, Coded, Constant, Copy, Plain, Rule, Rules
 
 SAMPLE_TICKS: Final = 512
@@ -87,7 +87,7 @@ class RuleFinder:
             return {}
         names = [self._columns[index] for index in kept]
         orders = _best_orders(samples)
-        pairs = [pair for at in range(len(names)) for pair in _references(samples, names, at, orders[at][0])]
+        pairs = _references(samples, names, [cost_bits for cost_bits, _ in orders])
         taken: dict[int, _Pair] = {}
         for pair in sorted(pairs, key=lambda pair: pair.gain_bits, reverse=True):
             if pair.column not in taken and not _leads_to(taken, pair.reference, pair.column):
@@ -97,33 +97,55 @@ class RuleFinder:
         return {**{name: rule for name, rule in own.items() if not name.startswith(READABLE)}, **coded}
 
 
-def _cost_bits(parts: Sequence[Bits], order: int) -> float:
-    """Return what a number costs on average, of one column or of its difference to another, in all samples."""
-    return entropy_bits(np.concatenate([differences(part, order)[_START:] for part in parts]))
+def _by_order(samples: Sequence[Bits]) -> Iterator[list[Bits]]:
+    """Yield the differences of all columns, order after order from 0 on."""
+    parts = list(samples)
+    yield parts
+    for _ in range(MAX_ORDER):
+        parts = [differences(part, 1) for part in parts]
+        yield parts
+
+
+def _in_a_row(parts: Sequence[Bits], delay: int = 0) -> Bits:
+    """Return what is measured of all samples, as it was `delay` ticks before: (columns, ticks)."""
+    return np.concatenate([part[:, _START - delay : part.shape[1] - delay] for part in parts], axis=1)
 
 
 def _best_orders(samples: Sequence[Bits]) -> list[tuple[float, int]]:
     """Return of each column the lowest cost in bits and its order, without a reference."""
-    columns = [[sample[at] for sample in samples] for at in range(len(samples[0]))]
-    return [min((_cost_bits(parts, order), order) for order in range(MAX_ORDER + 1)) for parts in columns]
+    costs = [[entropy_bits(column) for column in _in_a_row(parts)] for parts in _by_order(samples)]
+    return [min((cost_bits, order) for order, cost_bits in enumerate(each)) for each in zip(*costs, strict=True)]
 
 
-def _references(samples: Sequence[Bits], names: Sequence[str], at: int, cost_bits: float) -> list[_Pair]:
-    """Return codings of column `at` with a reference that cost less than `cost_bits`, the best of each reference."""
-    if cost_bits < NEARLY_COPY_BITS:
-        return []
-    limit = NEARLY_COPY_BITS if names[at].startswith(READABLE) else cost_bits - MIN_GAIN_BITS
-    best: dict[int, _Pair] = {}
-    for delay in range(MAX_DELAY + 1):
-        apart = [sample[at] - delayed(sample, delay) for sample in samples]
-        for order in range(MAX_ORDER + 1):
-            lengths = np.mean([length_bits(differences(part, order)[:, _START::SCREEN_STEP]) for part in apart], axis=0)
-            lengths[at] = np.inf
-            for other in lengths.argsort()[:SCREENED]:
-                cost = _cost_bits([part[other] for part in apart], order)
-                if cost < limit and (other not in best or cost_bits - cost > best[other].gain_bits):
-                    best[int(other)] = _Pair(cost_bits - cost, at, Coded(order, names[other], delay), int(other))
+def _references(samples: Sequence[Bits], names: Sequence[str], costs_bits: Sequence[float]) -> list[_Pair]:
+    """Return codings with a reference that cost less than a column does alone, the best of each column and reference.
+
+    Differences of a column less its reference are its differences less those of the reference, for all arithmetic wraps
+    around: they are worked out once for each column, not for each pair.
+    """
+    best: dict[tuple[int, int], _Pair] = {}
+    for order, parts in enumerate(_by_order(samples)):
+        now = _in_a_row(parts)
+        for delay in range(MAX_DELAY + 1):
+            then = _in_a_row(parts, delay)
+            screen = then[:, ::SCREEN_STEP].copy()
+            for at, cost_bits in enumerate(costs_bits):
+                if cost_bits < NEARLY_COPY_BITS:
+                    continue
+                limit = NEARLY_COPY_BITS if names[at].startswith(READABLE) else cost_bits - MIN_GAIN_BITS
+                for other in _screened(now[at, ::SCREEN_STEP], screen, at):
+                    gain_bits = cost_bits - entropy_bits(now[at] - then[other])
+                    worse = (at, other) in best and gain_bits <= best[at, other].gain_bits
+                    if cost_bits - gain_bits < limit and not worse:
+                        best[at, other] = _Pair(gain_bits, at, Coded(order, names[other], delay), other)
     return list(best.values())
+
+
+def _screened(column: Bits, others: Bits, at: int) -> list[int]:
+    """Return the columns that look the most like `column`, which is number `at` of them."""
+    lengths = length_bits(column - others)
+    lengths[at] = np.inf
+    return [int(other) for other in lengths.argsort()[:SCREENED]]
 
 
 def _leads_to(coded: dict[int, _Pair], start: int, goal: int) -> bool:
