@@ -15,7 +15,8 @@ import msgspec
 
 from simconsole.evaluation.sweep.task import Task, TaskResult, from_bytes, to_bytes
 from simconsole.evaluation.sweep.worker_pool import WorkerPool
-from simconsole.values.errors import SimConsoleError
+from simconsole.values.errors import SimConsoleError, one_line
+from simconsole.values.version import __version__
 
 _TRIES: Final = 3
 """How often Dask may give a batch to another worker because the one that had it has ended."""
@@ -33,7 +34,8 @@ def drive_on_dask(tasks: Sequence[Task], scheduler: str) -> Generator[TaskResult
     the others. Files that sessions name, traces, scripts and road maps, must lie where this machine has them.
 
     Raises:
-        SimConsoleError: no such scheduler, it has ended, or Dask is not installed (extra `dask`).
+        SimConsoleError: no such scheduler, it has ended, it or a worker has no simconsole or another version of it, or
+            Dask is not installed here (extra `dask`).
     """
     try:
         from distributed import CancelledError
@@ -42,10 +44,15 @@ def drive_on_dask(tasks: Sequence[Task], scheduler: str) -> Generator[TaskResult
     with _client(scheduler) as client:
         batches = _Batches(client)
         try:
+            for failure in client.run(check_version, __version__, on_error="return").values():
+                if failure is not None:  # it would end with its first drive
+                    raise ImportError(f"a worker: {one_line(failure)}")
             batches.give(tasks, batch_size(len(tasks), sum(client.nthreads().values())))
             yield from batches.results()
         except CancelledError:
             raise SimConsoleError(f"sweep: --scheduler: value {scheduler}: it has ended") from None
+        except (ImportError, RuntimeError) as error:  # of a worker; of a scheduler, which cannot read what it is given
+            raise SimConsoleError(f"sweep: --scheduler: value {scheduler}: {one_line(error)}") from None
         finally:
             batches.end()
 
@@ -69,7 +76,9 @@ class _Batches:
         """Give tasks to the workers, so many at a time."""
         for start in range(0, len(tasks), size):
             batch = tasks[start : start + size]
-            future = self._client.submit(drive_lines, list(map(to_bytes, batch)), pure=False, retries=_TRIES)
+            future = self._client.submit(
+                drive_lines, list(map(to_bytes, batch)), __version__, pure=False, retries=_TRIES
+            )
             self._waiting[future] = batch
             self._completed.add(future)  # type: ignore[no-untyped-call]
 
@@ -86,7 +95,7 @@ class _Batches:
         """Take back what is not driven, and end the processes that drive."""
         if self._client.status == "running":
             self._client.cancel(list(self._waiting))
-            self._client.run(close_pool)
+            self._client.run(close_pool, on_error="ignore")
 
 
 def _results(future: Any, batch: Sequence[Task]) -> list[TaskResult]:
@@ -128,12 +137,22 @@ _pool: WorkerPool | None = None
 _lock: Final = threading.Lock()
 
 
-def drive_lines(lines: Sequence[bytes]) -> list[bytes]:
+def check_version(version: str) -> None:
+    """Raise ImportError where this worker's version is another one: its drives might be others."""
+    if version != __version__:
+        raise ImportError(f"simconsole {__version__}, this machine {version}")
+
+
+def drive_lines(lines: Sequence[bytes], version: str) -> list[bytes]:
     """Drive tasks, each a line of JSON, one after the other, and return the results likewise: for Dask.
 
     None is begun after `_BATCH_S`: there may be fewer results than tasks, but one at least.
+
+    Raises:
+        ImportError: the tasks are of another version.
     """
     global _pool  # of Dask's worker, for all its threads
+    check_version(version)
     with _lock:
         if _pool is None:
             _pool = WorkerPool()

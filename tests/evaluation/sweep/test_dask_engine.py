@@ -8,7 +8,7 @@ from distributed import LocalCluster
 from distributed.scheduler import KilledWorker
 
 from simconsole.evaluation.sweep import dask_engine
-from simconsole.evaluation.sweep.dask_engine import batch_size, drive_lines, drive_on_dask
+from simconsole.evaluation.sweep.dask_engine import batch_size, check_version, drive_lines, drive_on_dask
 from simconsole.evaluation.sweep.driving import drive_task
 from simconsole.evaluation.sweep.task import TaskResult, from_bytes
 from simconsole.values.errors import SimConsoleError
@@ -34,12 +34,17 @@ sizes: list[int] = []
 """Of the batches that `counted` had."""
 
 
-def counted(lines: Sequence[bytes]) -> list[bytes]:
+def another(version: str) -> None:
+    """What a worker does that has another version."""
+    check_version("another than " + version)
+
+
+def counted(lines: Sequence[bytes], version: str) -> list[bytes]:
     sizes.append(len(lines))
-    return drive_lines(lines)
+    return drive_lines(lines, version)
 
 
-def deadly(lines: Sequence[bytes]) -> list[bytes]:
+def deadly(lines: Sequence[bytes], version: str) -> list[bytes]:
     """Drive nothing, but end with the sixth of all tasks."""
     indices = [from_bytes(line).index for line in lines]
     if 5 in indices:
@@ -71,6 +76,14 @@ def test_a_scheduler_that_ends_is_one_line(tmp_path: Path) -> None:
         there.scheduler.kill()
         with pytest.raises(SimConsoleError, match=f"--scheduler: value {there.url}: it has ended"):
             list(driven)
+
+
+def test_a_worker_of_another_version_is_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(dask_engine, "check_version", another)
+    with scheduler() as url, pytest.raises(SimConsoleError, match=f"{url}: ImportError: a worker: "):
+        list(drive_on_dask(grip(tmp_path, 2).tasks, url))
+    with pytest.raises(ImportError, match="this machine another"):
+        drive_lines((), "another")
 
 
 def test_batches_leave_each_thread_some_of_them() -> None:
