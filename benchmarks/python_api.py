@@ -5,7 +5,8 @@ Run: python benchmarks/python_api.py [--pairs N] [--seconds S]
 Both drive the same session headless into a bundle that stays unpacked, without a report: one as `simconsole drive`, one
 as `Session.run`. In the first comparison a script drives. In the second the command line plays the commands of an own
 controller from a bag (`--commands`), tick for tick what the function answers in the run from Python. Counted is user
-and system time of the process, in alternating pairs; the interval is that of the median's order statistics.
+and system time of the process, in alternating pairs; the interval is that of the median's order statistics. The exit
+code is 1 where the median is above the bar.
 """
 
 import argparse
@@ -18,6 +19,7 @@ from pathlib import Path
 
 from two_trees import interval
 
+BAR = 1.10
 SCRIPT = """\
 points:
   - {time_s: 0.0, throttle: 0, brake: 0, clutch: 0, hand_wheel_deg: 0, gear: 0}
@@ -59,10 +61,14 @@ def main() -> None:
         session.write_text(SESSION)
         command = (sys.executable, "-m", "simconsole", "drive")
         by_hand = (*command, str(session), "--headless", "--no-pack", "--for", seconds, "--out")
-        compare("script", folder, by_hand, (sys.executable, "-c", SCRIPTED, str(session), seconds), given.pairs)
+        from_python = (sys.executable, "-c", SCRIPTED, str(session), seconds)
+        ratios = [compare("script", folder, by_hand, from_python, given.pairs)]
         bag = own_bag(folder, seconds)
         by_bag = (*command, "bridge", "--headless", "--no-pack", "--commands", f"bag:{bag}", "--for", seconds, "--out")
-        compare("own controller", folder, by_bag, (sys.executable, "-c", OWN, "", seconds), given.pairs)
+        from_python = (sys.executable, "-c", OWN, "", seconds)
+        ratios.append(compare("own controller", folder, by_bag, from_python, given.pairs))
+    if max(ratios) > BAR:
+        raise SystemExit(f"above the bar of {BAR:g}")
 
 
 def own_bag(folder: Path, seconds: str) -> Path:
@@ -73,8 +79,8 @@ def own_bag(folder: Path, seconds: str) -> Path:
     return bag
 
 
-def compare(title: str, folder: Path, cli: tuple[str, ...], api: tuple[str, ...], pairs: int) -> None:
-    """Print the median ratio of the run from Python to that of the command line."""
+def compare(title: str, folder: Path, cli: tuple[str, ...], api: tuple[str, ...], pairs: int) -> float:
+    """Print and return the median ratio of the run from Python to that of the command line."""
     of_cli: list[float] = []
     of_api: list[float] = []
     for pair in range(pairs + 1):
@@ -92,6 +98,7 @@ def compare(title: str, folder: Path, cli: tuple[str, ...], api: tuple[str, ...]
         f"  Python over command line: median {statistics.median(ratios):.3f}, "
         f"95 % interval {ratios[low]:.3f} to {ratios[high]:.3f}"
     )
+    return statistics.median(ratios)
 
 
 if __name__ == "__main__":

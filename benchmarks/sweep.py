@@ -4,13 +4,14 @@ The same drives of 20 s at the same time: by `simconsole sweep` in so many worke
 each drives its share, one after the other, and nothing else. So what else the machine does slows both down alike. Once
 with a tenth of the drives and once with all. Told is the processor time of whole process trees, starts included: what
 each further drive costs (the bar), what begins and ends once, and the whole over that of a single process. With --dask
-the sweep is driven by the workers of a scheduler that is started for it, all their time included. The exit code is 1
-where a further drive of a sweep costs more than the bar allows.
+the sweep is driven by the workers of a scheduler that is started for it as docs/sweeps.md says, all their time
+included; what the environment sets for Dask counts before that. The exit code is 1 where a further drive of a sweep
+costs more than the bar allows.
 """
 
 import argparse
 import os
-import signal
+import re
 import socket
 import subprocess
 import sys
@@ -21,6 +22,8 @@ from statistics import median
 from typing import NamedTuple
 
 import yaml
+
+from simconsole.processes.lifetimes import end_with_parent_thread
 
 BAR = 1.10
 SESSION = {
@@ -49,6 +52,16 @@ for task in load_plan(Path(sys.argv[1])).tasks[int(sys.argv[2])::int(sys.argv[3]
     assert drive_task(task).outcome == "driven"
 """
 
+PAGE = Path(__file__).parents[1] / "docs" / "sweeps.md"
+DASK = dict(re.findall(r"(DASK_\w+)=(\w+)", PAGE.read_text("utf-8")))
+"""What it says to export for scheduler and workers."""
+WAIT = """\
+import sys
+from distributed import Client
+with Client(sys.argv[1]) as client:
+    client.wait_for_workers(int(sys.argv[2]))
+"""
+
 
 class Cost(NamedTuple):
     """Processor time in s."""
@@ -65,8 +78,14 @@ def cost(few: int, few_s: float, many: int, many_s: float) -> Cost:
 
 
 def begun(*words: str) -> "subprocess.Popen[bytes]":
-    """Start a program of Python."""
-    return subprocess.Popen([sys.executable, *words], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    """Start a program of Python, which ends with this one."""
+    return subprocess.Popen(
+        [sys.executable, *words],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        env={**DASK, **os.environ},
+        preexec_fn=end_with_parent_thread if sys.platform == "linux" else None,
+    )
 
 
 def cpu_s(process: "subprocess.Popen[bytes]", codes: Sequence[int] = (0,)) -> float:
@@ -98,11 +117,12 @@ def dask_s(plan: Path, out: Path, workers: int) -> float:
     cluster = [begun("-m", "distributed.cli.dask_scheduler", "--host", url, "--no-dashboard")]
     cluster += [begun(*dask, url, *options) for _ in range(workers)]
     try:
+        cpu_s(begun("-c", WAIT, url, str(workers)))  # not counted: nobody else needs it
         words = ("--engine", "dask", "--scheduler", url, "--out", str(out))
         spent_s = cpu_s(begun("-m", "simconsole", "sweep", str(plan), *words))
     finally:
-        for process in cluster:
-            process.send_signal(signal.SIGINT)
+        for process in cluster:  # what drove has ended with the sweep; a worker in order may wait for ever
+            process.kill()
         spent = [cpu_s(process, range(-64, 256)) for process in cluster]
     return spent_s + sum(spent)
 
@@ -126,6 +146,7 @@ def main() -> None:
     few, ratios, wholes = max(2 * workers, drives // 10), [], []
     with tempfile.TemporaryDirectory() as name:
         plans = {count: write_plan(Path(name) / str(count), count) for count in (few, drives)}
+        cpu_s(begun("-c", ALONE, str(plans[few]), "0", str(few)))  # one drive, which compiles what is not compiled yet
         for number in range(options.rounds):
             times = [turn(plan, plan.parent / f"out-{number}", workers, options.dask) for plan in plans.values()]
             swept, alone = (cost(few, few_s, drives, many_s) for few_s, many_s in zip(*times, strict=True))

@@ -41,7 +41,12 @@ RUN = {
         "simconsole check profiles/scenarios ": "tests/cli/test_check.py",
         "simconsole check mine.yaml --update-golden": "tests/evaluation/metrics/test_registered.py",
     },
-    "docs/sweeps.md": {"simconsole sweep plan.yaml": "tests/cli/sweep/test_sweep_command.py"},
+    "docs/sweeps.md": {
+        "simconsole sweep plan.yaml": "tests/cli/sweep/test_sweep_command.py",
+        "export DASK": "tests/evaluation/sweep/clusters.py",
+        "dask scheduler --no-dashboard": "tests/evaluation/sweep/clusters.py",
+        "dask worker tcp://": "tests/evaluation/sweep/clusters.py",
+    },
     "docs/traffic.md": {
         "sumo -c own.sumocfg --remote-port ": "tests/drives/sumo_machines.py",
         "simconsole drive session.yaml": "tests/drives/sumo_machines.py",

@@ -10,8 +10,9 @@ from pathlib import Path
 from simconsole.cli.outcome import Outcome, table
 from simconsole.cli.progress import Progress
 from simconsole.evaluation.report.sweep_page import write_sweep_page
-from simconsole.evaluation.sweep.engines import drive_here, drive_on_dask
+from simconsole.evaluation.sweep.dask_engine import drive_on_dask
 from simconsole.evaluation.sweep.journal import Journal
+from simconsole.evaluation.sweep.local_engine import drive_here
 from simconsole.evaluation.sweep.plan import Plan, load_plan
 from simconsole.evaluation.sweep.results import RESULTS, write_results
 from simconsole.evaluation.sweep.task import GOOD, Task, TaskResult

@@ -62,6 +62,12 @@ def test_a_drive_that_cannot_be_driven_is_told_and_is_code_1(tmp_path: Path) -> 
     assert "script.yaml" in (tmp_path / "sweep" / "sweep.html").read_text()
 
 
+def test_a_scheduler_that_is_not_there_is_one_line(tmp_path: Path) -> None:
+    plan = write_plan(tmp_path, values=GRIP)
+    words = ("sweep", plan, "--engine", "dask", "--scheduler", "nonsense", "--out", tmp_path / "sweep")
+    assert "--scheduler: value nonsense:" in complaint(simconsole(*words))
+
+
 def test_options_that_do_not_go_together_are_refused(tmp_path: Path) -> None:
     plan = write_plan(tmp_path, values=GRIP)
     assert "--scheduler" in complaint(simconsole("sweep", plan, "--engine", "dask"))

@@ -2,13 +2,10 @@ import os
 from contextlib import closing
 from pathlib import Path
 
-import pytest
-
 from simconsole.evaluation.sweep.driving import drive_task
-from simconsole.evaluation.sweep.engines import drive_here, drive_on_dask
+from simconsole.evaluation.sweep.local_engine import drive_here
 from simconsole.evaluation.sweep.task import TaskResult
-from simconsole.values.errors import SimConsoleError
-from tests.evaluation.sweep.clusters import cluster, kill, pool_workers_of
+from tests.evaluation.sweep.clusters import kill, pool_workers_of
 from tests.evaluation.sweep.plans import grip
 from tests.patience import wait_until
 
@@ -35,17 +32,3 @@ def test_a_sweep_that_is_given_up_leaves_no_process(tmp_path: Path) -> None:
     next(driven)
     driven.close()
     wait_until(lambda: not pool_workers_of(os.getpid()), "the workers' end")
-
-
-def test_dasks_workers_give_the_same_though_one_is_killed(tmp_path: Path) -> None:
-    tasks = grip(tmp_path, 8).tasks
-    with cluster(tmp_path, 2) as workers, closing(drive_on_dask(tasks, workers.url)) as driven:
-        results = [next(driven)]
-        workers.workers[0].kill()
-        results += driven
-    assert by_index(results) == [drive_task(task) for task in tasks]
-
-
-def test_a_scheduler_that_is_not_there_is_one_line() -> None:
-    with pytest.raises(SimConsoleError, match="--scheduler: value nonsense:"):
-        list(drive_on_dask((), "nonsense"))
