@@ -4,8 +4,9 @@ Run: python benchmarks/speed_advice.py [--seeds N] [--first SEED] [--vehicles N]
 
 A grid of netgenerate's with fixed programs and 300 m between lights; every vehicle is equipped, or none. The device
 gets our range and lower bound of speed. Vehicles of ours drive no faster than the advisor says, and slow down as gently
-as it counts on; who prepares to stop rolls on at the lower bound. Told are means over all trips, and the paired
-differences of seeds with their 95 % confidence interval: of both against none, and of ours against the device's.
+as it counts on; who prepares to stop rolls towards the line as the autopilot does. Told are means over all trips, and
+the paired differences of seeds with their 95 % confidence interval: of both against none, and of ours against the
+device's.
 With `--keep` a run that was ended goes on where it was, with the same words.
 """
 
@@ -29,6 +30,7 @@ from simconsole.world.rules.speed_advice import (
     Advised,
     Greens,
     SpeedAdvisor,
+    rolling_mps,
 )
 from simconsole.world.rules.timetable import greens, state_of
 from simconsole.world.sumo.netconvert import netconvert
@@ -39,6 +41,9 @@ _CITY: Final = (
 )  # fmt: skip
 _STEP_S: Final = 0.5
 _ANY_MPS: Final = 55.0
+_LEAST_BOUND_MPS: Final = 0.01  # SUMO refuses none at all
+_STOP_LINE_GAP_M: Final = 1.0
+"""So far before the line vehicles of SUMO's stop."""
 _WHO: Final = ("none", "device", "ours")
 _T_95: Final = {4: 2.776, 9: 2.262, 19: 2.093, 29: 2.045}
 """Student's t, two-sided, by degrees of freedom."""
@@ -154,12 +159,14 @@ class _Advised:
             advisor = self._advisors.setdefault(name, SpeedAdvisor(reaction_s=0.0))
             # Not getAllowedSpeed, which knows the bound that is set below.
             allowed = libsumo.lane.getMaxSpeed(libsumo.vehicle.getLaneID(name))
-            advice, limit = NO_ADVICE, allowed * libsumo.vehicle.getSpeedFactor(name)
+            advice, limit, left_m = NO_ADVICE, allowed * libsumo.vehicle.getSpeedFactor(name), 0.0
             if ahead and ahead[0][2] <= REACH_M:
                 signal, link, left_m, _ = ahead[0]
                 advice = advisor.advise(left_m, speed, limit, Greens(self._greens(signal, link, now_s), now_s), now_s)
-            target = {Advised.SPEED: advice.target_mps, Advised.STOP: LEAST_MPS}.get(advice.kind, _ANY_MPS)
-            libsumo.vehicle.setMaxSpeed(name, max(target, speed - DOWN_MPS2 * _STEP_S))
+            target = advice.target_mps if advice.kind is Advised.SPEED else _ANY_MPS
+            if advice.kind is Advised.STOP:
+                target = rolling_mps(left_m - _STOP_LINE_GAP_M - speed * _STEP_S)
+            libsumo.vehicle.setMaxSpeed(name, max(target, speed - DOWN_MPS2 * _STEP_S, _LEAST_BOUND_MPS))
 
     def _greens(self, signal: str, link: int, now_s: float) -> tuple[tuple[float, float], ...]:
         phases, phase = self._programs[signal], libsumo.trafficlight.getPhase(signal)

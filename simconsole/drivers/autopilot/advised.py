@@ -2,9 +2,9 @@
 
 from typing import Final
 
-from simconsole.drivers.path_tracker.signal_stops import Approach
+from simconsole.drivers.path_tracker.signal_stops import GAP_M, Approach
 from simconsole.drivers.path_tracker.speed_profile import SpeedProfile
-from simconsole.world.rules.speed_advice import LEAST_MPS, NO_ADVICE, Advice, SpeedAdvisor
+from simconsole.world.rules.speed_advice import LEAST_MPS, NO_ADVICE, Advice, SpeedAdvisor, rolling_mps
 from simconsole.world.rules.speed_advice import Advised as Kind
 
 REACTION_S: Final = 0.5
@@ -25,7 +25,7 @@ class Advised:
     def target_mps(
         self, approach: Approach | None, s_m: float, speed_mps: float, plan: SpeedProfile, now_s: float
     ) -> float | None:
-        """Return the speed that is advised until the line; None: none is, and lights are obeyed as they come."""
+        """Return the speed that is advised until the line, or to roll with towards a stop; None: neither is."""
         if approach is None or approach.left_m < LEAST_AHEAD_M:
             self._forget()
             return None
@@ -38,6 +38,8 @@ class Advised:
         self.advice = self._advisor.advise(
             approach.left_m, speed_mps, limit_mps, approach.greens, now_s, line=approach.line_m
         )
+        if self.advice.kind is Kind.STOP:
+            return rolling_mps(approach.left_m - GAP_M)
         return self.advice.target_mps if self.advice.kind is Kind.SPEED else None
 
     def _forget(self) -> None:

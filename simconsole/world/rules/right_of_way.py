@@ -3,7 +3,8 @@
 Seen from where others are and how they move; where they want to go only their indicators tell. Who is on a crossing, or
 steps onto it, is let pass until they are beyond the vehicle's lane. A vehicle with the right of way is let pass if it
 comes within the critical headway (`conflicts.CRITICAL_S`), unless it is on a roundabout and indicates that it leaves
-it; who is inside the junction is let out. Vehicles that have stood for a while before their line let others go.
+it; who is inside the junction is let out. Vehicles that have stood for a while before their line let others go, and at
+a traffic light those, too, that have stood inside the junction and indicate to the left: they wait for who comes.
 """
 
 from bisect import bisect_left
@@ -162,10 +163,13 @@ def _vehicle_first(
         speed, half = float(vehicles[user, 5]), 0.5 * float(vehicles[user, 6])
         inside = way.inside[place] > 0.0
         goes_first = way.first[place] > 0.0 and not protected
-        held = not inside and (standing[user] or _is_held(way, place, light))
+        left = float(way.to_m[place]) - half
+        if inside:
+            held = connection.signal >= 0 and standing[user] and vehicles[user, 10] > 0.0 and left > 0.0
+        else:
+            held = standing[user] or _is_held(way, place, light)
         if held or user in leaving or not (goes_first or inside):
             continue
-        left = float(way.to_m[place]) - half
         comes_s = max(left, 0.0) / max(speed, _SETS_OFF_MPS)
         leaves_s = (float(way.past_m[place]) + half) / max(speed, 1.0)
         if leaves_s > reaches_s and comes_s < reaches_s + (entry.critical_s if goes_first else _INSIDE_S):

@@ -190,6 +190,14 @@ def band_of(
     return (low, high) if low <= high else None
 
 
+def rolling_mps(left_m: float) -> float:
+    """Return how fast to drive where the advice is to prepare to stop, `left_m` before the place of the stop.
+
+    As slowly as anybody is told to drive, and then braking gently all the way: the light may be green before the stop.
+    """
+    return min(LEAST_MPS, math.sqrt(2.0 * DOWN_MPS2 * max(left_m, 0.0)))
+
+
 def _same(end_s: float, other_s: float) -> bool:
     return end_s == other_s or abs(end_s - other_s) < _SAME_S
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from simconsole.drivers.autopilot.advised import Advised
-from simconsole.drivers.path_tracker.signal_stops import Light, SignalStops
+from simconsole.drivers.path_tracker.signal_stops import GAP_M, Light, SignalStops
 from simconsole.drivers.path_tracker.speed_control import SpeedControl
 from simconsole.drivers.path_tracker.tracker_settings import COMFORT
 from simconsole.values.platform import Pose
@@ -13,7 +13,8 @@ from simconsole.values.signals import SignalState
 from simconsole.world.path_geometry import Piece
 from simconsole.world.route import Route, Stretch
 from simconsole.world.rules.approaches import StopLine
-from simconsole.world.rules.speed_advice import NO_ADVICE
+from simconsole.world.rules.speed_advice import LEAST_MPS, NO_ADVICE, rolling_mps
+from simconsole.world.rules.speed_advice import Advised as Kind
 from simconsole.world.rules.timetable import greens
 from tests.samples import Sample
 
@@ -91,6 +92,24 @@ def test_lights_are_passed_at_green_with_fewer_stops_and_no_later(sample: Sample
         f" {advised[:, 1].mean():.1f} against {plain[:, 1].mean():.1f} s, through after {advised[:, 2].mean():.1f}"
         f" against {plain[:, 2].mean():.1f} s"
     )
+
+
+def test_towards_a_stop_it_rolls_and_need_not_stand_where_green_comes() -> None:
+    """Who rolls at the least speed from where advice begins is there after 59 s: a second before green."""
+    passed, stood_s, _, hardest = driven(Program(60.0, 30.0, 0.0), advised=True)
+    assert passed == GREEN
+    assert stood_s == 0.0
+    assert hardest > -1.5
+    control, follower = SpeedControl(ROUTE, COMFORT, PERIOD_S), Advised()
+    stops = SignalStops([StopLine(LINE_M, 0, 2)], ["light"], FRONT_M)
+    stops.see({("light", 2): Light(RED, GREEN, 90.0, 0.0, ((90.0, 120.0),))})
+    far, near = (
+        follower.target_mps(stops.approach(s_m), s_m, LEAST_MPS, control.profile, 0.0)
+        for s_m in (LINE_M - 100.0, LINE_M - FRONT_M - 3.0)
+    )
+    assert follower.advice.kind is Kind.STOP
+    assert far == LEAST_MPS
+    assert near == rolling_mps(3.0 - GAP_M)
 
 
 def test_nothing_is_advised_where_no_light_is_ahead_or_nothing_was_told() -> None:

@@ -141,6 +141,24 @@ def test_who_has_stood_for_a_while_lets_others_go() -> None:
     assert right_of_way.owed(before(entry.line_m, 15.0, 0.0, 3.0), waiting, dark) == NOTHING_OWED
 
 
+def test_who_stands_inside_a_junction_with_lights_to_turn_left_waits_for_oncoming_traffic() -> None:
+    entry = next(one for one in urban().entries if one.connection.signal >= 0)
+    way = entry.watched
+    inside = int(np.argmin(np.where((way.inside > 0.0) & (way.first > 0.0), np.abs(way.to_m - 5.0), FAR)))
+    car = on_ring(ring(), 20.0, 0.0)
+    car[0, 2:5] = way.x_m[inside], way.y_m[inside], math.atan2(float(way.sine[inside]), float(way.cosine[inside]))
+
+    def owed_after(time_s: float, indicates: float) -> bool:
+        car[0, 10] = indicates
+        right_of_way = RightOfWay(urban())
+        right_of_way.owed(before(entry.line_m, 15.0, 0.0, 0.0), car, dark)
+        return right_of_way.owed(before(entry.line_m, 1.0, 0.0, time_s), car, dark) != NOTHING_OWED
+
+    assert owed_after(1.0, 1.0), "it may be about to go"
+    assert owed_after(3.0, 0.0), "it goes straight on, and is let out"
+    assert not owed_after(3.0, 1.0)
+
+
 def test_duty_lasts_a_moment_after_it_was_seen() -> None:
     foot, right_of_way = crossing(), RightOfWay(urban())
     assert right_of_way.owed(before(foot.line_m, 20.0), somebody(foot, 0.5), dark).yield_m < FAR

@@ -24,6 +24,7 @@ from simconsole.world.rules.speed_advice import (
     SpeedAdvisor,
     arrival_s,
     band_of,
+    rolling_mps,
 )
 from tests.samples import Measured, Sample
 
@@ -63,6 +64,18 @@ def test_nothing_legal_is_prepare_to_stop() -> None:
     found = advisor.advise(100.0, 12.0, LIMIT_MPS, Greens(((0.0, 5.0), (10.0, 40.0)), 0.2), 0.2)
     assert found.kind is Advised.SPEED, "the green after that which ends too soon"
     assert LEAST_MPS <= found.low_mps <= found.target_mps <= found.high_mps <= LIMIT_MPS
+
+
+def test_who_prepares_to_stop_rolls_and_brakes_gently_all_the_way() -> None:
+    assert rolling_mps(200.0) == LEAST_MPS
+    assert rolling_mps(0.0) == rolling_mps(-1.0) == 0.0
+    speed, left, now_s = LEAST_MPS, 20.0, 0.0
+    while speed > 0.5:
+        after = rolling_mps(left)
+        assert speed - after <= 1.1 * DOWN_MPS2 * PERIOD_S
+        speed, left, now_s = after, left - after * PERIOD_S, now_s + PERIOD_S
+    way_m = 0.5 * LEAST_MPS**2 / DOWN_MPS2
+    assert now_s == pytest.approx((20.0 - way_m) / LEAST_MPS + LEAST_MPS / DOWN_MPS2, abs=0.6)
 
 
 @pytest.mark.parametrize("limit_mps", [4.0, 5.0 / 3.6])
@@ -206,12 +219,11 @@ def driven(approach: Approach, rng: np.random.Generator, advised: bool = True) -
         if shown.kind is Advised.SPEED and now_s - changed_s >= approach.reaction_s:
             followed = shown.target_mps
         elif shown.kind is not Advised.SPEED:
-            followed = approach.limit_mps if shown is NO_ADVICE else speed
+            followed = approach.limit_mps if shown is NO_ADVICE else rolling_mps(left - 1.0)
+        accel = min(max(-DOWN_MPS2, (followed - speed) / 0.1), UP_MPS2)
         goes = approach.windows(now_s)[0][0] <= 0.0
         if not goes and shown.kind is not Advised.SPEED and speed**2 < 2.0 * 4.0 * left:  # else it is too late to stop
-            followed = min(followed, math.sqrt(2.0 * 1.5 * max(left - 1.0, 0.0)))
-        accel = max(-4.0 if followed < speed - 1.0 and not goes else -DOWN_MPS2, (followed - speed) / 0.1)
-        accel = min(accel, UP_MPS2)
+            accel = min(accel, max(-4.0, (math.sqrt(2.0 * 1.5 * max(left - 1.0, 0.0)) - speed) / 0.1))
         stood_s += PERIOD_S * (speed < 0.1)
         speed = max(0.0, speed + PERIOD_S * accel)
         left, now_s, step = left - PERIOD_S * speed, now_s + PERIOD_S, step + 1
