@@ -93,11 +93,18 @@ def links(
 
 
 def _start_autopilots(parts: Sequence[ResolvedSession], url: str, drive: str, programs: list[Popen[bytes]]) -> None:
+    """Start a program for all cars of one profile: what it hears of them and says to them goes in one piece."""
+    alike: dict[str, list[str]] = {}
     for part in parts:
         session, bridge = part.session, part.session.outputs.bridge
         if session.features.autopilot is not None:
             assert bridge is not None
-            programs.append(start_autopilot(url, session, bridge, drive, own_token(session)))
+            alike.setdefault(session.scenario.vehicle, []).append(bridge.namespace)
+    for part in parts:
+        session, bridge = part.session, part.session.outputs.bridge
+        if session.features.autopilot is not None and (cars := alike.pop(session.scenario.vehicle, None)):
+            assert bridge is not None
+            programs.append(start_autopilot(url, session, bridge, drive, own_token(session), namespaces=cars))
 
 
 def _wait(
