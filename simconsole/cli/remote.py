@@ -34,7 +34,7 @@ def autopilot(options: Namespace) -> Outcome:
         options.url,
         options.course,
         stop=stop,
-        namespace=options.namespace,
+        namespaces=options.namespace or ("",),
         rename=_renamed(options.rename),
         patience_s=options.wait,
         token=own_token(),

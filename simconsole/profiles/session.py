@@ -98,7 +98,7 @@ class PlatformSection(Section, frozen=True, kw_only=True):
     """Instruments and window of who sits in this platform, where a clock paces the drive; left out, `outputs.hud` in
     the one of `scenario.seat`, and none in the others."""
     autopilot: bool = True
-    """Whether `features.autopilot`, where there is one, starts a program for it, too."""
+    """Whether `features.autopilot`, where there is one, drives it, too; one program drives all cars of a profile."""
 
 
 class Scenario(Section, frozen=True, kw_only=True):

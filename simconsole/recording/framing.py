@@ -82,29 +82,29 @@ def seal(previous: bytes, tick: int, vector: bytes, messages: bytes = b"") -> tu
     return _HEAD.pack(len(body), crc32(body)) + body, digest
 
 
-def seal_block(previous: bytes, tick: int, vectors: Row) -> tuple[Row, bytes]:
-    """Return the frames of ticks without messages, as `seal` makes them, and the state's chained hash in the last.
+def seal_block(previous: bytes, tick: int, vectors: Row, messages: bytes = b"") -> tuple[bytes | memoryview, bytes]:
+    """Return the frames of ticks, one behind the other, as `seal` makes them, and the state's chained hash in the last.
 
     Args:
         previous: the chained hash before them.
         tick: the first.
         vectors: float64 [ticks, columns], the state vectors.
-
-    Returns: the frames one behind the other as uint8 [ticks, bytes of a frame], and the hash.
+        messages: those of the first tick, sealed, in a row.
     """
     size = frame_size(vectors.shape[1])
     frames = np.empty((len(vectors), size // 8))  # a frame without messages is a whole number of float64 long
     frames[:, 2:-1] = vectors
     content = frames.data.cast("B")
-    digest, promised = previous, size - _HEAD.size
+    digest, promised, behind = previous, size - _HEAD.size + len(messages), messages
     for at in range(0, len(content), size):
         end = at + size
         # Length and checksum take the place of the previous hash once the vector is hashed.
         _CHAINED.pack_into(content, at, digest, tick)
         digest = content[end - HASH_BYTES : end] = _hash(content[at : end - HASH_BYTES])
-        _HEAD.pack_into(content, at, promised, crc32(content[at + _HEAD.size : end]))
+        _HEAD.pack_into(content, at, promised, crc32(behind, crc32(content[at + _HEAD.size : end])))
+        promised, behind = size - _HEAD.size, b""
         tick += 1
-    return frames.view(np.uint8), digest
+    return (b"".join((content[:size], messages, content[size:])) if messages else content), digest
 
 
 def seal_message(previous: bytes, tick: int, stream: int, content: bytes) -> tuple[bytes, bytes]:

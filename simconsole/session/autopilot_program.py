@@ -3,6 +3,7 @@
 import os
 import secrets
 import subprocess
+from collections.abc import Sequence
 
 from simconsole.bridge.transport.addresses import reached_here
 from simconsole.processes.lifetimes import ATTACHED, DRIVE_VARIABLE, spawn
@@ -39,6 +40,7 @@ def start_autopilot(
     drive: str,
     token: str | None,
     plan_hz: float = 0.0,
+    namespaces: Sequence[str] = (),
 ) -> "subprocess.Popen[bytes]":
     """Start `simconsole autopilot` as a program of its own, which ends with this process.
 
@@ -48,6 +50,7 @@ def start_autopilot(
         bridge: what its topics are called, its certificate, and how late its commands act.
         drive: the drive's nonce, without which the program would take the next drive at this address for this one.
         plan_hz: how often a second it is to tell what it plans; 0: never.
+        namespaces: of cars that are alike and that it drives all; without, there is one, in that of `bridge`.
         token: what the server asks for; both go by the environment, for everyone can read a program's arguments.
 
     Raises:
@@ -78,8 +81,8 @@ def start_autopilot(
         arguments += ["--plan-hz", f"{plan_hz:g}"]
     if session.features.speed_advice:
         arguments += ["--speed-advice"]
-    if bridge.namespace:
-        arguments += ["--namespace", bridge.namespace]
+    for namespace in namespaces or filter(None, (bridge.namespace,)):
+        arguments += ["--namespace", namespace]
     for standard, name in bridge.rename.items():
         arguments += ["--rename", f"{standard}={name}"]
     if bridge.certificate is not None:

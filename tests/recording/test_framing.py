@@ -32,18 +32,18 @@ def test_a_frame_of_the_first_schema_is_what_it_was(header: LogHeader) -> None:
     assert (record.tick, record.vector.tobytes(), record.digest, record.messages) == (9, ROW.tobytes(), digest, ())
 
 
+@pytest.mark.parametrize("messages", [b"", b"sealed messages of the first tick"])
 @pytest.mark.parametrize("ticks", [1, 2, 65])
-def test_a_block_of_frames_is_the_frames_one_by_one(ticks: int) -> None:
+def test_a_block_of_frames_is_the_frames_one_by_one(ticks: int, messages: bytes) -> None:
     vectors = np.random.default_rng(ticks).normal(size=(ticks, 7))
     vectors[0, :4] = ROW
     digest, expected = bytes(range(8)), b""
     for tick, vector in enumerate(vectors, start=9):
-        frame, digest = seal(digest, tick, vector.tobytes())
+        frame, digest = seal(digest, tick, vector.tobytes(), messages if tick == 9 else b"")
         expected += frame
-    frames, last = seal_block(bytes(range(8)), 9, vectors)
-    assert frames.tobytes() == expected
+    frames, last = seal_block(bytes(range(8)), 9, vectors, messages)
+    assert bytes(frames) == expected
     assert last == digest
-    assert frames.shape == (ticks, frame_size(7))
 
 
 def test_the_hash_chains_over_tick_and_content() -> None:

@@ -66,6 +66,7 @@ class BridgeClient:
         first_s: float = FIRST_S,
         cap_s: float = CAP_S,
         dead_after_s: float = DEAD_AFTER_S,
+        answers_together: bool = False,
     ) -> None:
         """Remember where to connect.
 
@@ -84,6 +85,8 @@ class BridgeClient:
             cap_s: the longest, without its scatter.
             dead_after_s: how long the server may be silent before it counts as gone; infinite where whoever uses this
                 client learns of its end in another way.
+            answers_together: what is published while messages that came together are returned goes together, with the
+                last of them or in the next `receive`: for who answers several topics of one sender.
 
         Raises:
             BridgeError: `url` is not such an address, or the certificate cannot be read.
@@ -98,6 +101,8 @@ class BridgeClient:
         self._chance = random.Random()
         self._next_attempt_s = 0.0
         self._received: deque[Received] = deque()
+        self._answers_together = answers_together
+        self._held: list[bytes] = []
         self.state: State = "connecting"
         self.connections = 0
         """How often the connection was made."""
@@ -175,7 +180,12 @@ class BridgeClient:
             BridgeError: there is no connection, and this client does not come back.
         """
         text = self.protocol.publish(topic, message)
-        return self._connect() and self._send(text)
+        if not self._connect():
+            return False
+        if self._answers_together and self._received:
+            self._held.append(text)
+            return True
+        return self._send(text)
 
     def subscribe(
         self,
@@ -229,6 +239,8 @@ class BridgeClient:
             OtherDriveError: another drive's server has taken its place.
         """
         deadline_s = time.monotonic() + timeout_s
+        if self._held and not self._received:
+            self._send()
         while not self._received:
             now_s = time.monotonic()
             left_s = max(0.0, deadline_s - now_s)
@@ -242,6 +254,7 @@ class BridgeClient:
 
     def _open(self) -> None:
         self._received.clear()
+        self._held.clear()
         self._connection.open()
         for text in self.protocol.registrations():
             self._connection.send(text)
@@ -278,9 +291,10 @@ class BridgeClient:
     def _ask(self, make: Callable[[], bytes]) -> bool:
         return self._connect() and self._send(make())
 
-    def _send(self, text: bytes) -> bool:
+    def _send(self, *texts: bytes) -> bool:
+        held, self._held = self._held, []
         try:
-            self._connection.send(text)
+            self._connection.send(*held, *texts)
         except BridgeError as error:
             return self._lost_or_raise(error)
         return True

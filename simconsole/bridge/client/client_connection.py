@@ -119,23 +119,27 @@ class ClientConnection:
         of_drive = self._drive is not None and response.status_code == HTTPStatus.FORBIDDEN
         return OtherDriveError(text) if of_drive else BridgeError(text)
 
-    def send(self, message: bytes) -> None:
-        """Send a message, `Binary` or text.
+    def send(self, *messages: bytes) -> None:
+        """Send messages, each `Binary` or text, all at once.
 
         Raises:
             BridgeError: not connected, or the connection is lost.
         """
         if self._web is None or self._web.state is not State.OPEN:
             raise BridgeError(f"{self.url}: not connected")
-        frame = masked_frame(message)
-        if frame is not None:
-            self._send(frame)
-            return
+        frames = b""
+        for message in messages:
+            frames += masked_frame(message) or self._framed(message)
+        self._send(frames)
+
+    def _framed(self, message: bytes) -> bytes:
+        """Return the frame of a long message."""
+        assert self._web is not None
         if isinstance(message, Binary):
             self._web.send_binary(message)
         else:
             self._web.send_text(message)
-        self._flush()
+        return b"".join(self._web.data_to_send())
 
     def ping(self) -> None:
         """Ping the server. Raises BridgeError: the connection is lost."""

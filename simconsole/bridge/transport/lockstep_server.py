@@ -183,7 +183,10 @@ class LockstepBridge:
         self._flush()
 
     def ask(self, snapshot: Snapshot, of: ConsoleBridge | None = None) -> Question:
-        """Send a snapshot, odometry in any case; return what answers it, for `hear`. `of` as of `exchange`."""
+        """Publish a snapshot, odometry in any case; return what answers it, for `hear`, which sends what waits.
+
+        So a client that commands several platforms gets all of theirs at once. `of` as of `exchange`.
+        """
         console = of or self.console
         self._now_ns = snapshot.t_ns
         console.inputs.tick = snapshot.tick
@@ -191,7 +194,6 @@ class LockstepBridge:
         sequence = console.inputs.command.sequence
         question = Question(console.inputs, sequence, console.publish(snapshot, self._now_ns, odometry=True))
         self._pump_ros2()
-        self._flush()
         return question
 
     def hear(
@@ -202,6 +204,7 @@ class LockstepBridge:
         None is waited for longer than `timeout_s` of wall time or until `stop`, nor of a commander who is gone while no
         other has spoken.
         """
+        self._flush()
         deadline = time.monotonic() + timeout_s
         awaited = [question for question in asked if not question.is_settled]
         if not awaited:

@@ -209,7 +209,9 @@ def beside_a_drive(commands: Any) -> None:
     autopilot.add_argument("--plan-hz", type=number(0.0, 20.0, "Hz"), default=0.0, help="how often it tells its plan")
     autopilot.add_argument("--speed-advice", action="store_true", help="come to lights at green where speed can do it")
     autopilot.add_argument("--wait", type=float, default=10.0, metavar="S", help="how long to wait for the server")
-    autopilot.add_argument("--namespace", default="", metavar="NS", help="of the console's topics")
+    autopilot.add_argument(
+        "--namespace", action="append", default=[], metavar="NS", help="of the car's topics; again: of a further car"
+    )
     autopilot.add_argument("--rename", action="append", default=[], metavar="/TOPIC=/NAME", help="what one is called")
     autopilot.add_argument("--certificate", metavar="PEM", help="of a wss:// server; a token: SIMCONSOLE_TOKEN")
     autopilot.add_argument(ATTACHED, action="store_true", help="end with whoever holds standard input")

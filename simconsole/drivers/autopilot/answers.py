@@ -35,7 +35,14 @@ def make_tracker(
 
 
 class Answers:
-    """Answers one odometry after the other; what people must know is said once, when it begins."""
+    """Answers one odometry after the other; what people must know is said once, when it begins.
+
+    Attributes:
+        statistics: of all answers.
+        sees_lights: whether it asks what traffic lights show.
+        sees_others: whether it asks where other road users are.
+        is_advised: whether it has advice to tell.
+    """
 
     def __init__(
         self,
@@ -53,6 +60,8 @@ class Answers:
         self._advised = advised
         self._tracker, self._say, self._lights, self._others, self._yields = tracker, say, lights, others, yields
         self._obeys = lights is not None or yields is not None
+        self.sees_lights, self.sees_others = lights is not None, others is not None
+        self.is_advised = advised is not None
         self.statistics = TrackingStatistics()
         self._withholds = False
         self._told = NO_ADVICE

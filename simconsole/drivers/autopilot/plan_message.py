@@ -18,11 +18,16 @@ _ROUNDING_S: Final = 1e-6
 
 
 class PlanMessages:
-    """Says when a plan is due, by the stamps of what is answered, and writes it down."""
+    """Says when a plan is due, by the stamps of what is answered, and writes it down.
+
+    Attributes:
+        hz: how often a second; 0: never.
+    """
 
     def __init__(self, registry: Registry, rate_hz: float, ground: HeightField | None = None) -> None:
         """Plan `rate_hz` times a second, never for 0; places lie on `ground`, without one at height 0."""
         self._path, self._pose = registry.struct(PLAN_TYPE), registry.struct("geometry_msgs/PoseStamped")
+        self.hz = rate_hz
         self._period_s = 1.0 / rate_hz if rate_hz > 0.0 else math.inf
         self._ground = ground
         self._newest_s = -math.inf

@@ -2,12 +2,13 @@
 
 It answers every odometry with one command that carries the odometry's own stamp, so that a console in lockstep knows
 which state the command was made for; also while a person drives, so that engagement finds a fresh command. What people
-must know is logged: why it gives no commands (`answers`), and why the console refused one.
+must know is logged: why it gives no commands (`answers`), and why the console refused one. One program drives several
+cars that are alike, each in its namespace: what it answers to odometry that came together goes together.
 """
 
 import logging
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final, NamedTuple
 
 from simconsole.bridge.client.bridge_client import BridgeClient
@@ -70,7 +71,7 @@ def run(
     course_name: str,
     *,
     stop: Callable[[], bool] | None = None,
-    namespace: str = "",
+    namespaces: Sequence[str] = ("",),
     rename: Mapping[str, str] | None = None,
     patience_s: float = _PATIENCE_S,
     token: str | None = None,
@@ -86,11 +87,13 @@ def run(
 ) -> dict[str, Any]:
     """Drive until the server ends the session, is gone for `patience_s`, or `stop()` is true; return statistics.
 
+    They are those of the car; of several, `cars` has those of each by its namespace.
+
     Args:
         url: the rosbridge server, `ws://HOST:PORT`.
         course_name: a world profile, by name or path.
         stop: called after every message and four times a second.
-        namespace: put before every topic, `/car1`.
+        namespaces: of each car what is put before every topic, `/car1`.
         rename: names of topics in place of the standard ones; they win over the namespace.
         patience_s: how long to try to connect, at the start and after a connection was lost.
         token: shown to the server.
@@ -109,63 +112,111 @@ def run(
         BridgeError: no server answers at `url`.
         OtherDriveError: the server there belongs to another drive.
     """
-    world, car = open_world(load_world(course_name)), load_vehicle(vehicle)
-    lights = signal_stops(world, car)
-    others = None if roads_of(world) is None else Others(world.route, car, compiled)
-    answers = Answers(
-        make_tracker(tracker, world.route, car_model(car), delay_s, gate),
-        _say,
-        lights,
-        others,
-        yields(world, car, lights),
-        Advised() if speed_advice else None,
-    )
+    world, vehicle_profile = open_world(load_world(course_name)), load_vehicle(vehicle)
+
+    def answers(namespace: str) -> Answers:
+        lights = signal_stops(world, vehicle_profile)
+        return Answers(
+            make_tracker(tracker, world.route, car_model(vehicle_profile), delay_s, gate),
+            lambda what: _say(f"{namespace}: {what}" if namespace else what),
+            lights,
+            None if roads_of(world) is None else Others(world.route, vehicle_profile, compiled),
+            yields(world, vehicle_profile, lights),
+            Advised() if speed_advice else None,
+        )
+
     with BridgeClient(
-        url, token=token, certificate=certificate, drive=drive, until_good_bye=True, dead_after_s=dead_after_s
+        url,
+        token=token,
+        certificate=certificate,
+        drive=drive,
+        until_good_bye=True,
+        dead_after_s=dead_after_s,
+        answers_together=len(namespaces) > 1,
     ) as client:
-        topics = Topics._make((rename or {}).get(topic, namespace + topic) for topic in STANDARD)
-        client.advertise(topics.command, CONTROL)
-        if plan_hz > 0.0:
-            client.advertise(topics.plan, PLAN_TYPE)
-        if speed_advice:
-            client.advertise(topics.advice, ADVICE_TYPE)
-        client.subscribe(topics.odometry, "nav_msgs/Odometry", reads=Odometry)
-        client.subscribe(topics.mode, "std_msgs/String")
-        if lights is not None:
-            client.subscribe(topics.signals, SIGNALS_TYPE)
-        if others is not None:
-            client.subscribe(topics.road_users, ROAD_USERS_TYPE)
+        ground = world.ground if plan_hz > 0.0 else None
+        cars = {
+            namespace: _Car(
+                client,
+                Topics._make((rename or {}).get(topic, namespace + topic) for topic in STANDARD),
+                answers(namespace),
+                PlanMessages(client.registry, plan_hz, ground),
+            )
+            for namespace in namespaces
+        }
         client.connect(patience_s)
         try:
-            plans = PlanMessages(client.registry, plan_hz, world.ground if plan_hz > 0.0 else None)
-            ended = _answer(client, answers, plans, topics, stop or _never, patience_s)
+            ended = _drive(client, list(cars.values()), stop or _never, patience_s)
         except OtherDriveError:
             raise
         except BridgeError as error:
             ended = str(error)
         results = {"url": url, "course": course_name, "ended": ended, "connections": client.connections}
-    return {**results, **answers.statistics.results()}
+    told = {namespace: car.answers.statistics.results() for namespace, car in cars.items()}
+    return {**results, **(told[namespaces[0]] if len(told) == 1 else {"cars": told})}
 
 
-def _answer(
-    client: BridgeClient,
-    answers: Answers,
-    plans: PlanMessages,
-    topics: Topics,
-    stop: Callable[[], bool],
-    patience_s: float,
-) -> str:
-    """Answer odometry with commands until `stop` or until the server is gone; return which of both.
+class _Car:
+    """One car that is driven: its topics, and what answers its odometry."""
+
+    def __init__(self, client: BridgeClient, topics: Topics, answers: Answers, plans: PlanMessages) -> None:
+        """Ask the client for what concerns the car."""
+        self.topics, self.answers = topics, answers
+        self._client, self._plans = client, plans
+        self._command = client.registry.struct(CONTROL)()
+        # A console publishes who drives; with a server that does not, this program drives from the start.
+        self._engaged = True
+        client.advertise(topics.command, CONTROL)
+        if plans.hz > 0.0:
+            client.advertise(topics.plan, PLAN_TYPE)
+        if answers.is_advised:
+            client.advertise(topics.advice, ADVICE_TYPE)
+        client.subscribe(topics.odometry, "nav_msgs/Odometry", reads=Odometry)
+        client.subscribe(topics.mode, "std_msgs/String")
+        if answers.sees_lights:
+            client.subscribe(topics.signals, SIGNALS_TYPE)
+        if answers.sees_others:
+            client.subscribe(topics.road_users, ROAD_USERS_TYPE)
+
+    def take(self, topic: str, message: Any) -> None:
+        """Take a message of one of its topics; answer odometry with a command."""
+        if topic == self.topics.signals:
+            self.answers.see(lights_of(message))
+        elif topic == self.topics.road_users:
+            self.answers.see_others(*road_users_of(message))
+        elif topic == self.topics.odometry:
+            self._answer(message)
+        else:
+            self._engaged = message.data in _DRIVING
+
+    def _answer(self, message: Any) -> None:
+        client, answers, topics = self._client, self.answers, self.topics
+        seen = motion_of(message)
+        if seen is None:
+            answers.statistics.skipped += 1
+            return
+        stamp = message.header.stamp
+        stamp_s = stamp.sec + stamp.nanosec * 1e-9
+        answer = answers.answer(seen, self._engaged, stamp_s)
+        if (advice := answers.advice()) is not None:  # before the command, with which a console in lockstep goes on
+            client.publish(topics.advice, {"data": to_bytes(advice).decode()})
+        if answer is not None:
+            fill_command(self._command, stamp, answer)
+            client.publish(topics.command, self._command)
+        if self._plans.is_due(stamp_s):  # after the command, which must not wait for it
+            client.publish(topics.plan, self._plans.message(stamp, answers.planned(seen)))
+
+
+def _drive(client: BridgeClient, cars: Sequence[_Car], stop: Callable[[], bool], patience_s: float) -> str:
+    """Answer the odometry of cars with commands until `stop` or until the server is gone; return which of both.
 
     A lost connection is opened again.
 
     Raises:
         BridgeError: the server has ended the session.
     """
-    command = client.registry.struct(CONTROL)()
+    of_topic = {topic: car for car in cars for topic in car.topics}
     remarks = Remarks(_say)
-    # A console publishes who drives; with a server that does not, this program drives from the start.
-    engaged = True
     heard_s = time.monotonic()
     while not stop():
         received = client.receive(_WAIT_S)
@@ -174,32 +225,9 @@ def _answer(
             heard_s = time.monotonic()
         elif time.monotonic() - heard_s > patience_s:
             return client.failure
-        if received is None:
-            continue
-        topic, message = received
-        if topic == topics.signals:
-            answers.see(lights_of(message))
-            continue
-        if topic == topics.road_users:
-            answers.see_others(*road_users_of(message))
-            continue
-        if topic != topics.odometry:
-            engaged = message.data in _DRIVING
-            continue
-        seen = motion_of(message)
-        if seen is None:
-            answers.statistics.skipped += 1
-            continue
-        stamp = message.header.stamp
-        stamp_s = stamp.sec + stamp.nanosec * 1e-9
-        answer = answers.answer(seen, engaged, stamp_s)
-        if (advice := answers.advice()) is not None:  # before the command, with which a console in lockstep goes on
-            client.publish(topics.advice, {"data": to_bytes(advice).decode()})
-        if answer is not None:
-            fill_command(command, stamp, answer)
-            client.publish(topics.command, command)
-        if plans.is_due(stamp_s):  # after the command, which must not wait for it
-            client.publish(topics.plan, plans.message(stamp, answers.planned(seen)))
+        if received is not None:
+            topic, message = received
+            of_topic[topic].take(topic, message)
     return "stopped"
 
 

@@ -5,12 +5,14 @@ from typing import Final
 
 import numpy as np
 
-from simconsole.hud.driver_view.mesh import Array, Colour, Vertices
-from simconsole.hud.driver_view.vehicle_body import PAINT, Size, VehicleMeshes, vehicle_meshes
+from simconsole.hud.driver_view.mesh import Array, Colour, Vertices, joined, placed
+from simconsole.hud.driver_view.vehicle_body import PAINT, SEAT_M, Size, VehicleMeshes, vehicle_meshes
 from simconsole.world.traffic.road_users import RoadUser, RoadUsersAt, users
 
 SIZE: Final = Size(length_m=4.4, width_m=1.8, height_m=1.5, rear_overhang_m=0.9, wheelbase_m=2.6)
 """Of the vehicle that stands for all: others are it, stretched."""
+ROBOT: Final = Size(length_m=0.138, width_m=0.178, height_m=0.192, rear_overhang_m=0.101, wheelbase_m=0.16)
+"""Of the robot that stands for all, a TurtleBot3 Burger."""
 PAINTS: Final[tuple[Colour, ...]] = (
     (206, 208, 210), (40, 42, 46), (140, 144, 150), (150, 34, 34), (54, 92, 150), (226, 224, 216), (44, 84, 66),
 )  # fmt: skip
@@ -36,6 +38,22 @@ def bodies() -> tuple[Vertices, ...]:
         made["colour"][painted, :3] = paint
         found.append(made)
     return tuple(found)
+
+
+def robot() -> Vertices:
+    """Return the robot that stands for all, stretched to the box of the vehicle that does."""
+    parts = vehicle_meshes(ROBOT)
+    wheels = [placed(parts.wheel, (x_m, y_m, 0.0), 0.0, 1.0) for x_m, y_m in parts.wheel_places]
+    made = joined([parts.body, *wheels])
+    made["position"][:, 0] += ROBOT.rear_overhang_m
+    made["position"] *= np.divide(SIZE[:3], ROBOT[:3])
+    made["position"][:, 0] -= SIZE.rear_overhang_m
+    return made
+
+
+def is_robot(user: RoadUser) -> bool:
+    """Return whether a vehicle is one that nobody sits in."""
+    return user.height_m < SEAT_M
 
 
 def paint_of(user: RoadUser) -> int:

@@ -11,7 +11,7 @@ from simconsole.hud.driver_view.light import Light, reach_m, shadow_matrix
 from simconsole.hud.driver_view.mesh import Vertices, indexed
 from simconsole.hud.driver_view.motion import ShownVehicle
 from simconsole.hud.driver_view.other_people import person, person_model
-from simconsole.hud.driver_view.other_vehicles import bodies, meshes, model, paint_of
+from simconsole.hud.driver_view.other_vehicles import bodies, is_robot, meshes, model, paint_of, robot
 from simconsole.hud.driver_view.scene import Pieces, ViewScene, in_sight, lit_lamps
 from simconsole.hud.driver_view.views import Look
 from simconsole.hud.gl.programs import (
@@ -110,7 +110,7 @@ class Renderer:
             other.wheel_places,
         )
         self._other_indicators = (self._put(other.left_indicators), self._put(other.right_indicators))
-        self._person = self._put(person())
+        self._person, self._robot = self._put(person()), self._put(robot())
         self._map: moderngl.Framebuffer | None = None
         if quality.shadows:
             depth = context.depth_texture((SHADOW_PX, SHADOW_PX))
@@ -213,7 +213,7 @@ class Renderer:
                 continue
             body, place = self._other(user)
             self._draw_mesh(body, place)
-            if body is self._person:
+            if body is self._person or body is self._robot:
                 continue
             self._draw_indicators(self._other_indicators, shown, user.turn_indicators, place)
             for x, y in self._other_wheels if away < WHEELS_M else ():
@@ -224,7 +224,9 @@ class Renderer:
         on_foot = user.kind == RoadUserKind.PEDESTRIAN
         place = person_model(user) if on_foot else model(user)
         place[2, 3] += self._scene.height_m(user.x_m, user.y_m)
-        return self._person if on_foot else self._other_bodies[paint_of(user)], place
+        if on_foot:
+            return self._person, place
+        return self._robot if is_robot(user) else self._other_bodies[paint_of(user)], place
 
     def _draw_mesh(self, mesh: _Drawn, model: Array) -> None:
         if mesh.length:

@@ -153,7 +153,8 @@ class LogWriter:
         if 8 * vectors.shape[1] != self._vector_bytes:
             raise ValueError(f"state vectors of {8 * vectors.shape[1]} bytes in a log of {self._vector_bytes}")
         if self.failure is None:
-            frames, digest, digests = self._sealed_block(tick, vectors, messages)
+            sealed, digests = self._sealed(tick, messages) if messages else _NO_MESSAGES
+            frames, digest = seal_block(self.digest, tick, vectors, sealed)
             problem = self._problem(frames)
             if problem is None:
                 self.ticks += len(vectors)
@@ -168,20 +169,6 @@ class LogWriter:
             if self.failure is not None:
                 return count
         return len(vectors)
-
-    def _sealed_block(
-        self, tick: int, vectors: Row, messages: Sequence[tuple[str, bytes]]
-    ) -> tuple[bytes | memoryview, bytes, dict[int, bytes]]:
-        """Return the frames of ticks, and the chained hashes of all streams after them."""
-        if not messages:
-            frames, digest = seal_block(self.digest, tick, vectors)
-            return frames.data.cast("B"), digest, {}
-        sealed, digests = self._sealed(tick, messages)
-        first, digest = seal(self.digest, tick, vectors[0].tobytes(), sealed)
-        if len(vectors) == 1:
-            return first, digest, digests
-        frames, digest = seal_block(digest, tick + 1, vectors[1:])
-        return first + frames.tobytes(), digest, digests
 
     def _sealed(self, tick: int, messages: Sequence[tuple[str, bytes]]) -> tuple[bytes, dict[int, bytes]]:
         """Return the messages of a tick as they lie in its frame, and the chained hashes of their streams after it."""

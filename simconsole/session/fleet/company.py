@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from simconsole.session.traffic_source import ego_box
 from simconsole.tick.advance import Console, ConsoleState
@@ -65,9 +66,9 @@ class Company:
         """Return whether a road user is a platform."""
         return number < len(self._platforms)
 
-    def rows(self, numbers: Sequence[int]) -> Array:
+    def rows(self, numbers: NDArray[np.intp]) -> Array:
         """Return where these platforms are, float64 [platforms, FIELDS], a copy."""
-        return self._table[numbers]
+        return self._table.take(numbers, axis=0)
 
     def moving(self, user: RoadUser) -> Moving:
         """Return how a road user of a platform's moves as a body."""
@@ -82,7 +83,7 @@ class Beside:
 
     def __init__(self, company: Company, numbers: Sequence[int]) -> None:
         """Take the platforms of these numbers."""
-        self._company, self._numbers = company, numbers
+        self._company, self._numbers = company, np.array(numbers, np.intp)
 
     def road_users(self) -> Array:
         """Return where they are, float64 [users, FIELDS] as `RoadUser`."""

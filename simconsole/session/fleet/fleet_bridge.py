@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 def links(
     parts: Sequence[ResolvedSession],
     consoles: Sequence[Console],
-    sights: Sequence[TrafficSource | None],
+    sights: Sequence[TrafficSource],
     folder: Path,
     interrupt: Interrupt,
     stack: ExitStack,
@@ -38,7 +38,7 @@ def links(
     Args:
         parts: the session of each platform.
         consoles: theirs.
-        sights: the road users of each.
+        sights: the road users of each; a robot tells nobody of them.
         folder: where topics are recorded if the session says so.
         interrupt: ends the waiting.
         stack: closes the server, and ends the autopilots.
@@ -60,7 +60,7 @@ def links(
     bridges = [part.session.outputs.bridge for part in parts]
     mode, drive = parts[0].session.mode, new_nonce()
     first, *others = [
-        (bridge, surroundings(part, console, sight))
+        (bridge, surroundings(part, console, None if console.others else sight))
         for bridge, part, console, sight in zip(bridges, parts, consoles, sights, strict=True)
     ]
     assert first[0] is not None
@@ -93,11 +93,18 @@ def links(
 
 
 def _start_autopilots(parts: Sequence[ResolvedSession], url: str, drive: str, programs: list[Popen[bytes]]) -> None:
+    """Start a program for all cars of one profile: what it hears of them and says to them goes in one piece."""
+    alike: dict[str, list[str]] = {}
     for part in parts:
         session, bridge = part.session, part.session.outputs.bridge
         if session.features.autopilot is not None:
             assert bridge is not None
-            programs.append(start_autopilot(url, session, bridge, drive, own_token(session)))
+            alike.setdefault(session.scenario.vehicle, []).append(bridge.namespace)
+    for part in parts:
+        session, bridge = part.session, part.session.outputs.bridge
+        if session.features.autopilot is not None and (cars := alike.pop(session.scenario.vehicle, None)):
+            assert bridge is not None
+            programs.append(start_autopilot(url, session, bridge, drive, own_token(session), namespaces=cars))
 
 
 def _wait(

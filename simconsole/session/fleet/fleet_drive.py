@@ -44,7 +44,7 @@ class _Member(NamedTuple):
     console: Console
     initial: ConsoleState
     bundle: BundleWriter
-    sight: Sight | None  # of the others; None for a robot, which is told of circles
+    sight: Sight  # of the others
     opened: Opened
     link: AskingLink | ServedLink | None  # None: no server
 
@@ -81,10 +81,10 @@ def drive_fleet(
         interrupt = stack.enter_context(Interrupt())
         sumo = shared_sumo(parts, consoles, company, stack)
         sights = [
-            None if isinstance(part.vehicle, TurtlebotProfile) else sight_of(company, number, part, console, sumo)
+            sight_of(company, number, part, console, sumo)
             for number, (part, console) in enumerate(zip(parts, consoles, strict=True))
         ]
-        bundles = _bundles(named, consoles, sights, folder, given, stack)
+        bundles = _bundles(named, consoles, folder, given, stack)
         opened = _open(parts, consoles, sights, bundles, interrupt, stack, on_bridge)
         interrupt.check()
         fleet = [
@@ -117,15 +117,14 @@ def drive_fleet(
 def _bundles(
     parts: Mapping[str, ResolvedSession],
     consoles: Sequence[Console],
-    sights: Sequence[Sight | None],
     folder: Path,
     given: Given,
     stack: ExitStack,
 ) -> list[BundleWriter]:
     bundles: list[BundleWriter] = []
-    for (name, part), console, sight in zip(parts.items(), consoles, sights, strict=True):
+    for (name, part), console in zip(parts.items(), consoles, strict=True):
         own = folder / name if bundles else folder
-        bundle = bundle_of(part, console, own, given, among_platforms=sight is not None)
+        bundle = bundle_of(part, console, own, given, among_platforms=True)
         bundles.append(stack.enter_context(bundle))
         stack.enter_context(undone(partial(remove_half_made, own)))
         if len(bundles) == 1:
@@ -136,7 +135,7 @@ def _bundles(
 def _open(
     parts: Sequence[ResolvedSession],
     consoles: Sequence[Console],
-    sights: Sequence[Sight | None],
+    sights: Sequence[Sight],
     bundles: Sequence[BundleWriter],
     interrupt: Interrupt,
     stack: ExitStack,
@@ -194,8 +193,7 @@ def _run(
         if sumo is not None:
             sumo.step(states[0].tick)
         for number, (member, state) in enumerate(zip(fleet, states, strict=True)):
-            if member.sight is not None:
-                member.sight.look(Snapshot(state.tick, tick_hz, state.vector), company, number)
+            member.sight.look(Snapshot(state.tick, tick_hz, state.vector), company, number)
         AskingLink.hear_all(links)
 
     def finished(states: Sequence[ConsoleState]) -> bool:
@@ -210,9 +208,11 @@ def _run(
 
 
 def _told(member: _Member, number: int, whereabouts: Whereabouts) -> Components:
-    """Return the parts of a platform's drive; a robot is told of the others in columns of its own."""
+    """Return the parts of a platform's drive; a robot is told of the others in columns of its own alone."""
     parts = member.opened.components
-    return parts._replace(others=whereabouts.seen_by(number)) if member.console.others else parts
+    if not member.console.others:
+        return parts
+    return parts._replace(others=whereabouts.seen_by(number), road_users=None)
 
 
 def _body(resolved: ResolvedSession, console: Console) -> Body:

@@ -1,14 +1,18 @@
 """What one platform of several sees of the others, and of SUMO's traffic where there is one."""
 
+from typing import Any
+
 from simconsole.session.fleet.company import Company
 from simconsole.session.fleet.shared_sumo import SharedSumo
 from simconsole.session.traffic_source import TrafficSource, signals_of
 from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession
+from simconsole.values.signals import VehicleState
 from simconsole.values.state_vector import Snapshot
 from simconsole.world.kinds.worlds import open_world
 from simconsole.world.roads.road_world import roads_of
 from simconsole.world.rules.owing import Owing
+from simconsole.world.traffic.road_users import Box
 
 
 class Sight(TrafficSource):
@@ -21,6 +25,21 @@ class Sight(TrafficSource):
         """Look at the others, at the end of a period; the platform is that of this number, where `company` has it."""
         if snapshot.tick % self._period_ticks == 0:
             self._look_around(snapshot, company.vehicle(number), company.box(number))
+
+
+class Onlooking(Sight):
+    """What the recording and the views of a robot have of the others; itself it is told of circles (`Whereabouts`)."""
+
+    def _look_around(self, snapshot: Snapshot, vehicle: VehicleState, ego: Box) -> None:
+        """Take where everybody is, and nothing that would act on the robot."""
+        self._newest = self._of(snapshot.tick, self._traffic.step(ego))
+        self._fresh = True
+        for show in self._shown:
+            show(self._newest)
+
+    def summary(self) -> dict[str, Any]:
+        """Return nothing: who touches a robot is told by its own state."""
+        return {}
 
 
 def sight_of(
@@ -41,4 +60,6 @@ def sight_of(
         owing = Owing(roads.road_map, roads.legs, route, console.tick_hz, state)
         signals = None if on_sumo is None else signals_of(roads, console, on_sumo.signals)
     traffic = on_sumo or company.around(number)
+    if console.others:
+        return Onlooking(traffic, console.platform, period_ticks)
     return Sight(traffic, console.platform, period_ticks, route, owing, signals, moves=company.moving)

@@ -3,9 +3,11 @@ import select
 import socket
 import threading
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from typing import Any
 
 import pytest
+from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request
 from websockets.protocol import State
 from websockets.server import ServerProtocol
@@ -111,6 +113,43 @@ def test_wishes_made_before_and_after_connecting_hold_again_after_another_connec
         assert (received.topic, received.message.data) == ("/talk", "hello")
         client.unsubscribe("/a")
         client.unadvertise("/talk")
+
+
+def test_answers_to_what_came_together_go_together(faking: Callable[..., str], monkeypatch: pytest.MonkeyPatch) -> None:
+    heard: list[bytes] = []
+
+    def serve(server: ServerConnection) -> None:
+        texts = [b'{"op":"publish","topic":"/%s","msg":{"data":"?"}}' % topic for topic in (b"a", b"b", b"c")]
+        server.socket.sendall(b"".join(bytes((0x81, len(text))) + text for text in texts))  # whole frames, unmasked
+        with suppress(ConnectionClosed):
+            while True:
+                heard.append(server.recv(decode=False))
+
+    with BridgeClient(faking(serve), answers_together=True) as client:
+        client.advertise("/talk", "std_msgs/String")
+        for topic in ("/a", "/b", "/c"):
+            client.subscribe(topic, "std_msgs/String")
+        client.connect()
+        sent: list[int] = []
+        send = client._connection.send
+
+        def counting(*texts: bytes) -> None:
+            sent.append(len(texts))
+            send(*texts)
+
+        monkeypatch.setattr(client._connection, "send", counting)
+        for _ in range(3):
+            received = client.receive(PATIENCE_S)
+            assert received is not None
+            if received.topic != "/c":
+                client.publish("/talk", {"data": received.topic})
+        assert not sent, "nothing goes before all have been looked at"
+        client.receive(0.0)
+        assert sent == [2]
+        client.publish("/talk", {"data": "at once"})
+        assert sent == [2, 1]
+        wait_until(lambda: len(heard) == 7, "everything said")
+    assert [b"/a" in heard[4], b"/b" in heard[5], b"at once" in heard[6]] == [True, True, True]
 
 
 def test_time_out_returns_none_and_the_connection_stays(

@@ -134,6 +134,27 @@ def test_what_it_plans_is_told_now_and_then_and_only_after_the_command() -> None
     assert results["commands"] == 101
 
 
+def test_one_program_drives_a_car_in_each_namespace() -> None:
+    """Both stand beside the path: one to its left, one to its right; each is steered back."""
+    said: list[dict[str, Any]] = []
+
+    def serve(socket: ServerConnection) -> None:
+        for _ in range(6):  # of each car an advertised topic and two subscriptions
+            socket.recv()
+        for step in range(20):
+            for namespace, y in (("/left", 0.3), ("/right", -0.3)):
+                socket.send(odometry(step, 100.0, y, 0.0, 8.0, 0.0).replace('"/odom"', f'"{namespace}/odom"'))
+            said.extend(json.loads(socket.recv()) for _ in range(2))
+        socket.close()
+
+    with serving(serve) as url:
+        results = run(url, "urban", namespaces=("/left", "/right"))
+    assert {car: told["commands"] for car, told in results["cars"].items()} == {"/left": 20, "/right": 20}
+    turns = {one["topic"]: one["msg"]["lateral"]["steering_tire_angle"] for one in said}
+    assert turns["/left/control/command/control_cmd"] < 0.0 < turns["/right/control/command/control_cmd"]
+    assert len(said) == 40
+
+
 def test_stop_ends_it() -> None:
     asked: list[int] = []
     server = Server(steps=30, engage_at=0)

@@ -9,9 +9,11 @@ from simconsole.hud.driver_view.other_vehicles import (
     SIZE,
     at_moment,
     bodies,
+    is_robot,
     meshes,
     model,
     paint_of,
+    robot,
 )
 from simconsole.hud.driver_view.vehicle_body import GLASS
 from simconsole.world.traffic.road_users import RoadUser, RoadUsersAt, table
@@ -79,3 +81,14 @@ def test_body_fills_the_box_of_the_road_user() -> None:
     assert 0.5 * (low + high)[:2] == pytest.approx((30.0, 4.0), abs=0.1)
     assert high[2] == pytest.approx(2.2, rel=0.1)
     assert SIZE.rear_overhang_m < SIZE.length_m
+
+
+def test_a_robot_is_drawn_as_one_and_fills_its_box() -> None:
+    burger = USER._replace(yaw_rad=0.0, length_m=0.138, width_m=0.178, height_m=0.192)
+    assert is_robot(burger)
+    assert not is_robot(USER)
+    corners = np.column_stack((robot()["position"], np.ones(len(robot())))) @ model(burger).T
+    low, high = corners[:, :3].min(axis=0), corners[:, :3].max(axis=0)
+    assert (low[:2] > (30.0 - 0.11, 4.0 - 0.10)).all()
+    assert (high < (30.0 + 0.11, 4.0 + 0.10, 0.20)).all()
+    assert high[2] > 0.18

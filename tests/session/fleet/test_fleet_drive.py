@@ -14,9 +14,10 @@ from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.manifest import read_manifest
 from simconsole.recording.bundles.replay_bundle import replay_bundle
 from simconsole.recording.bundles.verification import verify
+from simconsole.recording.recorded_road_users import recorded_road_users
 from simconsole.session.fleet.fleet_drive import drive_fleet
 from simconsole.session.resolution import resolve
-from simconsole.values.signals import Mode
+from simconsole.values.signals import NO_AHEAD, Mode
 from tests.ports import free_port
 from tests.session.fleet.fleet_client import NAMES, FleetClient
 
@@ -94,6 +95,14 @@ def test_what_each_is_told_of_the_others_is_where_they_were(driven: Driven) -> N
     assert told.column("others.radius_0_m")[100] == pytest.approx(RADIUS_M, abs=0.01)
     # Of the end of the control period before, and the same throughout a period.
     assert (told.column("others.x_0_m")[800:804] == told.column("others.x_0_m")[800]).all()
+
+
+def test_views_have_the_other_robots_as_road_users(driven: Driven) -> None:
+    at = next(at for at in recorded_road_users(open_bundle(driven.folders[2]).log) if at.tick == 800)
+    assert at.users[:, 0].tolist() == [0.0, 1.0]
+    x_m = [driven.tables[number].column("vehicle.x_m")[799] for number in (0, 1)]
+    assert at.users[:, 2] == pytest.approx(np.array(x_m) - 0.032, abs=0.002), "the middle of each body"
+    assert (driven.tables[2].column("ahead.lead_gap_m") == NO_AHEAD.lead_gap_m).all(), "it is not told so"
 
 
 def test_lidars_see_the_other_robots(driven: Driven) -> None:
