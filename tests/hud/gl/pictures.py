@@ -20,6 +20,7 @@ def context() -> "moderngl.Context":
     """The context of all pictures, current; another one if SDL has closed the display that both drew on."""
     if not _contexts or not _is_alive(_contexts[-1]):
         _contexts.append(windowless_context())
+        _contexts[-1].gc_mode = "auto"  # pictures of hundreds of tests are freed as Python frees what drew them
     return _contexts[-1]
 
 
