@@ -70,14 +70,16 @@ def replaced(path: Path) -> Iterator[Path]:
 def held_alone(path: Path) -> Iterator[None]:
     """Hold a file (made where it is missing) that no other process or thread holds meanwhile; wait for who does.
 
-    The end of a process lets go of what it held. Does not wait on Windows. Raises OSError.
+    The end of a process lets go of what it held. Does not wait on Windows, nor on a disk that has no locks, as those of
+    some clusters. Raises OSError: the file cannot be made.
     """
     descriptor = os.open(path, _FILE, 0o644)
     try:
         if sys.platform != "win32":
             import fcntl
 
-            fcntl.flock(descriptor, fcntl.LOCK_EX)
+            with suppress(OSError):
+                fcntl.flock(descriptor, fcntl.LOCK_EX)
         yield
     finally:
         os.close(descriptor)
