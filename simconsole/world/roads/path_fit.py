@@ -112,29 +112,31 @@ def _least(points: Array, weight: Array) -> Array:
         for second in range(first, 4):
             bands[second - first][first : count - 3 + first] += third[first] * third[second]
     bands[0] += weight
+    rows: list[tuple[float, ...]] = []  # of each i: L at (i, i - 1), (i, i - 2), (i, i - 3), then solutions over d
+    d1 = d2 = d3 = 1.0  # of the rows before: the diagonal of D, L at their first and second place, what they solve
+    a1 = a2 = b1 = 0.0
+    x1 = x2 = x3 = y1 = y2 = y3 = 0.0
+    shifted = (np.pad(bands[k][: count - k], (k, 0)).tolist() for k in range(4))  # entry (i, i - k) at i
     right = (points * weight[:, None]).tolist()
-    diagonal, one, two, three = (band.tolist() for band in bands)
-    d, a, b, c = [0.0] * count, [0.0] * count, [0.0] * count, [0.0] * count  # row i of L: a, b, c at i-1, i-2, i-3
-    x, y = [0.0] * count, [0.0] * count
-    for i in range(count):
-        if i >= 3:
-            c[i] = three[i - 3] / d[i - 3]
-        if i >= 2:
-            b[i] = (two[i - 2] - c[i] * d[i - 3] * a[i - 2]) / d[i - 2]
-        if i >= 1:
-            a[i] = (one[i - 1] - b[i] * d[i - 2] * a[i - 1] - c[i] * d[i - 3] * b[i - 1]) / d[i - 1]
-        d[i] = diagonal[i] - a[i] * a[i] * d[i - 1] - b[i] * b[i] * d[i - 2] - c[i] * c[i] * d[i - 3]
-        x[i] = right[i][0] - a[i] * x[i - 1] - b[i] * x[i - 2] - c[i] * x[i - 3]
-        y[i] = right[i][1] - a[i] * y[i - 1] - b[i] * y[i - 2] - c[i] * y[i - 3]
-    found = np.empty((count, 2))
-    nexts = [(0.0, 0.0)] * 3
-    for i in range(count - 1, -1, -1):
-        later = [(row, i + k + 1) for k, row in enumerate((a, b, c)) if i + k + 1 < count]
-        px = x[i] / d[i] - sum(row[j] * nexts[k][0] for k, (row, j) in enumerate(later))
-        py = y[i] / d[i] - sum(row[j] * nexts[k][1] for k, (row, j) in enumerate(later))
-        nexts = [(px, py), *nexts[:2]]
-        found[i] = px, py
-    return found
+    for diagonal, one, two, three, (right_x, right_y) in zip(*shifted, right, strict=True):
+        c = three / d3
+        b = (two - c * d3 * a2) / d2
+        a = (one - b * d2 * a1 - c * d3 * b1) / d1
+        d = diagonal - a * a * d1 - b * b * d2 - c * c * d3
+        x = right_x - a * x1 - b * x2 - c * x3
+        y = right_y - a * y1 - b * y2 - c * y3
+        rows.append((a, b, c, x / d, y / d))
+        d1, d2, d3, a1, a2, b1 = d, d1, d2, a, a1, b
+        x1, x2, x3, y1, y2, y3 = x, x1, x2, y, y1, y2
+    found: list[tuple[float, float]] = []
+    x1 = x2 = x3 = y1 = y2 = y3 = 0.0
+    a1 = b1 = b2 = c1 = c2 = c3 = 0.0  # of the rows behind
+    for a, b, c, x, y in reversed(rows):
+        x1, x2, x3 = x - (a1 * x1 + b2 * x2 + c3 * x3), x1, x2
+        y1, y2, y3 = y - (a1 * y1 + b2 * y2 + c3 * y3), y1, y2
+        found.append((x1, y1))
+        a1, b1, b2, c1, c2, c3 = a, b, b1, c, c1, c2
+    return np.array(found[::-1])
 
 
 def _driven(points: Array, limits: Array) -> list[FittedPiece]:
