@@ -31,7 +31,10 @@ def test_sumo_moves_the_others_and_its_signals_hold(
     assert (table.column("ahead.approach") != 0.0).all(), "never the map's own programs"
     assert table.column("ahead.approach")[-1] > 0.0
     assert list(bundle.log.messages(SIGNALS))
-    assert min(len(at.users) for at in recorded_road_users(bundle.log)) > 3
+    tables = [at.users for at in recorded_road_users(bundle.log)]
+    assert min(map(len, tables)) > 0
+    (first, *_, last) = ({user[0]: (user[2], user[3]) for user in users.tolist()} for users in tables)
+    assert any(last[number] != place for number, place in first.items() if number in last), "somebody moves"
 
 
 def test_without_the_extra_it_is_refused_in_one_line(

@@ -305,5 +305,5 @@ def mutated(content: bytes, rng: random.Random) -> bytes:
     return (text[:start] + text[end:]).encode()
 
 
-NAMED: Final = re.compile(r"made\.xosc: (line \d+: (<\w+>|not XML): |<\w+>: )")
+NAMED: Final = re.compile(r"made\.xosc: (line \d+: (<[\w.:-]+>|not XML): |<[\w.:-]+>: )")  # as names are in XML
 """How a refusal begins: with the element and its line; of a file that is none or lacks a part, with what it is."""
