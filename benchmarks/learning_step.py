@@ -45,7 +45,7 @@ def measured(environment: DrivingEnvironment, rounds: int) -> tuple[float, float
         environment.reset(seed=1, options={"s_m": 0.0})
         for _ in range(STEPS // 2):  # at the same speeds as above
             environment.step(action)
-        rows, console, vector = environment._rows, environment._console, environment._vector
+        rows, console, vector = environment._next.rows, environment._console, environment._vector
         assert console is not None
         began_s = time.process_time()
         for _ in range(STEPS):

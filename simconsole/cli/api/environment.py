@@ -7,7 +7,7 @@ ticks as lie between two answers, made at once.
 import math
 from collections.abc import Sequence
 from functools import partial
-from typing import Any, Final, SupportsFloat
+from typing import Any, Final, NamedTuple, SupportsFloat
 
 import msgspec
 import numpy as np
@@ -46,6 +46,16 @@ _WHEEL, _SPEED, _ACCEL = _ROS.at("road_wheel_rad"), _ROS.at("speed_mps"), _ROS.a
 _EVENTS: Final = LAYOUT.events.at("events")
 _ENGAGE_STEPS: Final = 50
 _SEEN: Final = len(LaneView._fields)
+
+
+class _Block(NamedTuple):
+    """The ticks of one step: their rows, the last of them, and the columns of what is commanded."""
+
+    rows: Row
+    last: Row
+    sequence: Row
+    wheel: Row
+    asked: Row
 
 
 class DrivingEnvironment(gymnasium.Env[Observation, Action]):
@@ -104,8 +114,8 @@ class DrivingEnvironment(gymnasium.Env[Observation, Action]):
         bounds = np.array(MOST, np.float32)
         self.observation_space = gymnasium.spaces.Box(-bounds, bounds, dtype=np.float32)
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (1 if speed_mps is not None else 2,), np.float32)
+        self._blank = np.zeros(_SEEN, np.float32)
         self._console: Console | None = None
-        self._rows: Row = np.zeros((0, 0))
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -121,14 +131,9 @@ class DrivingEnvironment(gymnasium.Env[Observation, Action]):
             self._console = assemble(self._resolved, compiled)[0]
         self._console = self._console._replace(platform=there.platform, initial=there.initial)
         self._vector, self._place = state.vector, place_at(self._path, s_m)
-        self._rows = _quiet_rows(self._ticks, self._console.width)
-        self._make_ticks, self._last = block_of(self._console), self._rows[-1]
-        by_speed = self._speed_mps is not None
-        self._rows[:, _KIND] = RemoteKind.SPEED if by_speed else RemoteKind.ACCELERATION
-        columns = (_SEQUENCE, _WHEEL, _SPEED if by_speed else _ACCEL)
-        self._of_sequence, self._of_wheel, self._of_asked = (self._rows[:, at] for at in columns)
+        self._make_ticks = block_of(self._console)
         self._sequence, self._steps = 0.0, 0
-        self._engage()
+        self._engage(self._console.width)
         return self._observe()[0], {"s_m": float(self._place[2])}
 
     def _started(self, s_m: float, off: NDArray[np.float64]) -> ResolvedSession:
@@ -144,28 +149,38 @@ class DrivingEnvironment(gymnasium.Env[Observation, Action]):
         scenario = msgspec.structs.replace(session.scenario, start=start)
         return msgspec.structs.replace(self._resolved, session=msgspec.structs.replace(session, scenario=scenario))
 
-    def _engage(self) -> None:
-        """Command standstill until autonomy is granted.
+    def _engage(self, width: int) -> None:
+        """Command standstill until autonomy is granted, and make ready for the first step; state vectors of `width`.
 
         Raises:
             ProfileError: it never is.
         """
+        self._next, self._newest = (self._block(width, 0.0, Event.REQUEST_AUTONOMOUS) for _ in range(2))
         for _ in range(_ENGAGE_STEPS):
-            self._advance(0.0, 0.0, int(Event.REQUEST_AUTONOMOUS))
+            self._advance(0.0)
             if self._observe()[1]:
+                self._next, self._newest = (self._block(width, self._speed_mps or 0.0) for _ in range(2))
                 return
         raise ProfileError("features.control: autonomy is not granted: person_required: false, and nobody in the seat")
 
+    def _block(self, width: int, asked: float, events: int = 0) -> _Block:
+        """Return rows that the ticks of a step are made in; two take turns, as each begins where another has ended."""
+        by_speed = self._speed_mps is not None
+        rows = _quiet_rows(self._ticks, width)
+        rows[0, _EVENTS] = events
+        rows[:, _KIND] = RemoteKind.SPEED if by_speed else RemoteKind.ACCELERATION
+        columns = (_SEQUENCE, _WHEEL, _SPEED if by_speed else _ACCEL)
+        block = _Block(rows, rows[-1], *(rows[:, at] for at in columns))
+        block.asked.fill(asked)
+        return block
+
     def step(self, action: Action) -> tuple[Observation, SupportsFloat, bool, bool, dict[str, Any]]:
         """Command, and make the ticks of a step."""
-        wheel = min(max(action.item(0), -1.0), 1.0) * self._most_rad
-        if self._speed_mps is not None:
-            asked = self._speed_mps
-        else:
+        if self._speed_mps is None:
             share = min(max(action.item(1), -1.0), 1.0)
-            asked = share * (2.0 if share > 0.0 else 4.0)
+            self._next.asked.fill(share * (2.0 if share > 0.0 else 4.0))
         before_m = self._place.item(2)
-        self._advance(wheel, asked)
+        self._advance(min(max(action.item(0), -1.0), 1.0) * self._most_rad)
         seen, driving = self._observe()
         self._steps += 1
         off = abs(self._place.item(3)) / self._half_lane_m
@@ -173,20 +188,18 @@ class DrivingEnvironment(gymnasium.Env[Observation, Action]):
         reward = LEFT_LANE if ended else (self._place.item(2) - before_m) * (1.0 - off)
         return seen, reward, ended, self._steps >= self._most_steps, {}
 
-    def _advance(self, road_wheel_rad: float, asked: float, events: int = 0) -> None:
-        assert self._console is not None, "reset comes first"
-        rows = self._rows
+    def _advance(self, road_wheel_rad: float) -> None:
+        block = self._next
         self._sequence += 1.0
-        self._of_sequence.fill(self._sequence)
-        self._of_wheel.fill(road_wheel_rad)
-        self._of_asked.fill(asked)
-        rows[0, _EVENTS] = events
-        self._make_ticks(self._vector, rows)
-        self._vector[:] = self._last
+        block.sequence.fill(self._sequence)
+        block.wheel.fill(road_wheel_rad)
+        self._make_ticks(self._vector, block.rows)
+        self._vector = block.last
+        self._next, self._newest = self._newest, block
 
     def _observe(self) -> tuple[Observation, bool]:
         """Return what is seen, in a new array, and whether automation drives."""
-        seen = np.empty(_SEEN, np.float32)
+        seen = self._blank.copy()
         return seen, self._look(self._vector, self._place, seen)
 
     @property
