@@ -15,7 +15,6 @@ ELSEWHERE: Final = {
     "bridge/tools/bench_peers": "bridge/tools/test_bench.py",
     "bridge/transport/picows_transport": "bridge/transport/test_interface.py",
     "bridge/transport/websockets_transport": "bridge/transport/test_interface.py",
-    "drivers/robots/nodes/fleet_program": "drivers/robots/nodes/test_team_program.py",
     "evaluation/sweep/kept": "cli/sweep/test_sweep_command.py",
     "evaluation/sweep/pool_worker": "evaluation/sweep/test_worker_pool.py",
     "evaluation/sweep/task": "evaluation/sweep/test_plan.py",

@@ -210,7 +210,8 @@ class BridgeProfile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     ping_interval_s: Annotated[float, Meta(gt=0.0, le=60.0)] = 1.0
     """A client that sends nothing for this long is sent a ping."""
     dead_after_s: Annotated[float, Meta(gt=0.0, le=600.0)] = 3.0
-    """A client is taken for gone when for this long nothing came from it and its machine acknowledged nothing."""
+    """A client is taken for gone when for this long nothing came from it and its machine acknowledged nothing, though
+    the console listened."""
     stall_close_s: Annotated[float, Meta(gt=0.0, le=600.0)] = 10.0
     """A client that is connected but reads nothing for this long is disconnected."""
     external_view: bool = False

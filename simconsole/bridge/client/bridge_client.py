@@ -300,11 +300,13 @@ class BridgeClient:
         return True
 
     def _read(self, timeout_s: float) -> None:
+        self._liveness.listen(time.monotonic())
         try:
             messages = self._connection.read(timeout_s)
         except BridgeError as error:
             self._lost_or_raise(error)
             return
+        self._liveness.look(time.monotonic())
         for text in messages or ():
             received = self.protocol.receive(text, time.monotonic_ns())
             if received is not None:

@@ -8,6 +8,8 @@ CAP_S: Final = 1.5
 JITTER: Final = 0.25
 PING_AFTER_S: Final = 1.0
 DEAD_AFTER_S: Final = 3.0
+AWAY_S: Final = 1.5
+"""Who waits for something to come, and looks again only after longer, was away: a ping is due after 1 s."""
 
 
 class Backoff:
@@ -31,7 +33,11 @@ class Backoff:
 
 
 class Liveness:
-    """Silence on a connection: after 1 s a ping is due, once a second; after 3 s it is dead."""
+    """Silence on a connection: after 1 s a ping is due, once a second; after 3 s it is dead.
+
+    Only silence that was listened to counts: where this process was stopped, or its whole machine stood still, what the
+    other side has sent meanwhile is still to be read, or to be sent.
+    """
 
     def __init__(self, ping_after_s: float = PING_AFTER_S, dead_after_s: float = DEAD_AFTER_S) -> None:
         """Start at time 0; `begin` sets it."""
@@ -39,10 +45,21 @@ class Liveness:
         self._dead_after_s = dead_after_s
         self._heard_s = 0.0
         self._pinged_s = 0.0
+        self._looked_s = 0.0
 
     def begin(self, now_s: float) -> None:
         """Take a new connection."""
-        self._heard_s = self._pinged_s = now_s
+        self._heard_s = self._pinged_s = self._looked_s = now_s
+
+    def listen(self, now_s: float) -> None:
+        """Note that this side begins to look whether something has come."""
+        self._looked_s = now_s
+
+    def look(self, now_s: float) -> None:
+        """Note that it has looked again; where that took longer than AWAY_S, silence counts from now on."""
+        if now_s - self._looked_s > AWAY_S:
+            self.heard(now_s)
+        self._looked_s = now_s
 
     def heard(self, at_s: float) -> None:
         """Note that something arrived."""

@@ -45,6 +45,7 @@ class ConnectionChecks:
         if overdue is not None:
             return f"sends too slowly: {overdue}"
         now_s = now_ns / NS_PER_S
+        self._liveness.look(now_s)
         # A program that is slow to answer is not a machine that is gone, which acknowledges nothing either.
         if self._liveness.is_dead(now_s) and sockets.is_unacknowledged(sock):
             return f"has been gone for {self._dead_after_s:g} s"

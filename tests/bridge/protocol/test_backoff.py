@@ -32,3 +32,17 @@ def test_silence_is_asked_about_each_second_and_ends_after_three() -> None:
     liveness.heard(5.0)
     assert not liveness.is_dead(15.0)
     assert liveness.patience_s(99.0) == 0.0
+
+
+def test_silence_counts_only_while_somebody_listens() -> None:
+    liveness = Liveness()
+    liveness.begin(10.0)
+    liveness.look(11.5)
+    liveness.look(13.0)
+    assert liveness.is_dead(13.0)
+    liveness.listen(60.0)
+    liveness.look(61.0)
+    assert liveness.is_dead(61.0), "nobody looked for a while, but all that came is read by now"
+    liveness.look(62.75)
+    assert not liveness.is_dead(65.5)
+    assert liveness.is_dead(65.75)

@@ -52,8 +52,20 @@ def test_a_silent_client_is_gone_where_nothing_is_acknowledged(
     connection: Checked, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("simconsole.bridge.transport.sockets.is_unacknowledged", lambda sock: True)
-    assert connection.at(7.9) is None
+    assert [connection.at(5.0 + 0.25 * look) for look in range(12)] == [None] * 12
     assert connection.at(8.0) == "has been gone for 3 s"
+
+
+def test_a_client_is_not_gone_because_the_server_or_its_machine_stood_still(
+    connection: Checked, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What was sent just before is unacknowledged, and nothing was heard, of who could neither send nor acknowledge."""
+    monkeypatch.setattr("simconsole.bridge.transport.sockets.is_unacknowledged", lambda sock: True)
+    assert connection.at(5.25) is None
+    assert connection.at(65.0) is None
+    assert connection.at(67.75 - 1.5) is None
+    assert connection.at(67.75) is None
+    assert connection.at(68.0) == "has been gone for 3 s"
 
 
 def test_a_message_that_does_not_end_is_not_waited_for(connection: Checked) -> None:

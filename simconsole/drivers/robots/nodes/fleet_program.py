@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 from simconsole.bridge.client.bridge_client import BridgeClient
 from simconsole.bridge.protocol.backoff import DEAD_AFTER_S
@@ -31,6 +31,18 @@ class FleetDriven(NamedTuple):
     moments: list[list[StampedPose]]  # where SLAM had each robot
     commands: int
     ended: str  # why
+
+
+class Answering(Protocol):
+    """What drives one robot, as `NavigationNode`."""
+
+    answered_ns: int
+
+    def take(self, topic: str, message: Any) -> None:
+        """Take a message; answer odometry."""
+
+
+Drivers = Sequence[tuple[NodePort, Answering]]
 
 
 def run(
@@ -66,24 +78,57 @@ def run(
         for member in team.members:
             member.navigator.warm_up()
         client.connect(patience_s)
-        ended = "stopped"
         try:
-            while not stop() and not team.is_done:
-                shared.pump(WAIT_S)
-                for port, node in drivers:
-                    while port.waiting:
-                        node.take(*port.waiting.popleft())
-                told(team)
-            if team.is_done:
-                ended = "mission done"
-                # Leave what is asked next unanswered: a server that waits sees in that very tick that its client is
-                # gone, and not, by chance, a tick before or after. So equal seeds give equal recordings.
-                while lockstep and not stop() and not any(port.waiting for port, _ in drivers):
-                    shared.pump(WAIT_S)
+            ended = drive(shared, drivers, team, stop, lockstep, told)
         except BridgeError as error:
             ended = str(error)
     commands = sum(node.commands for _, node in drivers)
     return FleetDriven(shared_map.grid, [node.moments for node in slams], commands, ended)
+
+
+def drive(
+    shared: SharedClient,
+    drivers: Drivers,
+    team: Team,
+    stop: Callable[[], bool],
+    lockstep: bool,
+    told: Callable[[Team], None],
+) -> str:
+    """Drive until the team is done or `stop()` is true; return which.
+
+    Args:
+        shared: the connection.
+        drivers: the robots' nodes, and their shares of it.
+        team: what they do.
+        stop: as of `run`, likewise the others.
+        lockstep: the console waits for each command.
+        told: called after every message, with the team.
+
+    Raises:
+        BridgeError: the connection has ended.
+    """
+    while not stop() and not team.is_done:
+        _take(shared, drivers)
+        told(team)
+    if not team.is_done:
+        return "stopped"
+    if lockstep:
+        # A server that waits sees in the very tick that its client is gone. Which tick that is must not depend on which
+        # messages had come when the last task was done: all robots answer what is of that time, and nothing later.
+        done_ns = max(node.answered_ns for _, node in drivers)
+        while not stop() and any(node.answered_ns < done_ns for _, node in drivers):
+            _take(shared, drivers)
+        while not stop() and not any(port.waiting for port, _ in drivers):
+            shared.pump(WAIT_S)
+    return "mission done"
+
+
+def _take(shared: SharedClient, drivers: Drivers) -> None:
+    """Take one message, and those that came while a robot waited for SLAM."""
+    shared.pump(WAIT_S)
+    for port, node in drivers:
+        while port.waiting:
+            node.take(*port.waiting.popleft())
 
 
 def _slam(port: NodePort, shared_map: SharedMap, robot: Robot) -> SlamNode:

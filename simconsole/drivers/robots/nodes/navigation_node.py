@@ -12,6 +12,7 @@ import numpy as np
 
 from simconsole.bridge.client.bridge_client import BridgeClient
 from simconsole.bridge.protocol.backoff import DEAD_AFTER_S
+from simconsole.bridge.protocol.client_protocol import Received
 from simconsole.drivers.robots.navigation.mission import Mission, Visit
 from simconsole.drivers.robots.navigation.navigator import Navigator
 from simconsole.drivers.robots.navigation.path_following import STOP, Speeds
@@ -79,7 +80,12 @@ class RobotTask(Protocol):
 
 
 class NavigationNode:
-    """Drives one robot."""
+    """Drives one robot.
+
+    Attributes:
+        commands: how many it has published.
+        answered_ns: the time of the odometry that it has answered last; 0 before the first.
+    """
 
     def __init__(
         self,
@@ -104,6 +110,7 @@ class NavigationNode:
             heard: told of each odometry's time, and whether the robot drives by commands as far as is known.
         """
         self.commands = 0
+        self.answered_ns = 0
         self._heard = heard
         self._yields = yields
         self._mission = mission
@@ -139,6 +146,10 @@ class NavigationNode:
         client.subscribe(topics.scan, "sensor_msgs/LaserScan", reads=LaserScan, queue_length=5)
         # Last: a console in lockstep begins when somebody listens to this.
         client.subscribe(topics.odometry, "nav_msgs/Odometry", reads=Odometry)
+
+    def is_asked(self, received: Received | None) -> bool:
+        """Return whether this is the odometry that the robot is to answer."""
+        return received is not None and received.topic == self._topics.odometry
 
     def take(self, topic: str, message: Any) -> None:
         """Take a message; each odometry is answered by one command."""
@@ -182,6 +193,7 @@ class NavigationNode:
         angular = {"x": 0.0, "y": 0.0, "z": self._speeds.yaw_rate_radps}
         self._client.publish(self._topics.command, {"linear": linear, "angular": angular})
         self.commands += 1
+        self.answered_ns = time_ns
 
     def _look(self) -> None:
         """Turn a scan into echoes in odom once odometry up to its end is there."""
@@ -280,6 +292,8 @@ def run(
                     node.take(*received)
             if mission is not None and mission.is_done:
                 ended = "mission done"
+                while lockstep and not stop() and not node.is_asked(client.receive(WAIT_S)):
+                    pass  # so that a server that waits sees in the very tick that is asked of that its client is gone
         except BridgeError as error:
             ended = str(error)
     found = ([], 0.0, None) if mission is None else (mission.visits, mission.planned_m, mission.explored_s)
