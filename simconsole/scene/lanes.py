@@ -52,6 +52,7 @@ class LaneKind(NamedTuple):
     column: str
     label: Callable[[float], str]
     colours: Mapping[str, Colour] = {}  # by label; rerun chooses where there is none
+    of_robots: bool = True  # robots have it, too
 
 
 def takeover_label(stage: float) -> str:
@@ -101,13 +102,13 @@ LANES: Final[tuple[LaneKind, ...]] = (
     LaneKind(f"{WHO_DRIVES}/mode", "arbitration.mode", mode_label, _MODES),
     LaneKind(f"{WHO_DRIVES}/remote", "arbitration.commander", commander_label, _COMMANDERS),
     LaneKind(f"{WHO_DRIVES}/takeover", "arbitration.takeover_stage", takeover_label, _STAGES),
-    LaneKind(f"{CONTROLS}/gear", "vehicle.gear", gear_label, _GEARS),
-    LaneKind(f"{CONTROLS}/indicators", "command.turn_indicators", indicator_label, _INDICATORS),
-    LaneKind(f"{CONTROLS}/hazard_lights", "command.hazard_lights", on_label, _ON),
+    LaneKind(f"{CONTROLS}/gear", "vehicle.gear", gear_label, _GEARS, of_robots=False),
+    LaneKind(f"{CONTROLS}/indicators", "command.turn_indicators", indicator_label, _INDICATORS, of_robots=False),
+    LaneKind(f"{CONTROLS}/hazard_lights", "command.hazard_lights", on_label, _ON, of_robots=False),
     LaneKind(f"{HEALTH}/wheel", "driver.wheel_validity", validity_label, _DEVICES),
     LaneKind(f"{HEALTH}/throttle", "driver.throttle_validity", validity_label, _DEVICES),
     LaneKind(f"{HEALTH}/brake", "driver.brake_validity", validity_label, _DEVICES),
-    LaneKind(f"{HEALTH}/shifter", "driver.shifter_validity", validity_label, _DEVICES),
+    LaneKind(f"{HEALTH}/shifter", "driver.shifter_validity", validity_label, _DEVICES, of_robots=False),
     LaneKind(f"{HEALTH}/motor", "torque.enabled", on_label, {on_label(0.0): QUIET, on_label(1.0): GOOD}),
     LaneKind(f"{HEALTH}/ros", "ros_link.state", link_label, _CONTROLLERS),
     LaneKind(f"{HEALTH}/can", "ecu_link.state", link_label, _CONTROLLERS),
@@ -116,8 +117,13 @@ LANE_COLUMNS: Final[tuple[str, ...]] = tuple(kind.column for kind in LANES)
 """The columns of a state vector that the lanes read."""
 
 
+def lanes_of(is_robot: bool) -> tuple[LaneKind, ...]:
+    """Return the lanes of a robot, or of any other vehicle."""
+    return tuple(kind for kind in LANES if kind.of_robots or not is_robot)
+
+
 def lane_changes(
-    table: Mapping[str, Array], times_ns: NDArray[np.int64], seen: Mapping[str, float] | None
+    table: Mapping[str, Array], times_ns: NDArray[np.int64], seen: Mapping[str, float] | None, is_robot: bool = False
 ) -> tuple[Lane, ...]:
     """Return the changes of every lane.
 
@@ -125,9 +131,10 @@ def lane_changes(
         table: LANE_COLUMNS columns of state vectors in their order.
         times_ns: of each of them.
         seen: the columns' last values of what came before; None at the start, where each state counts as new.
+        is_robot: whose lanes they are.
     """
     found = []
-    for kind in LANES:
+    for kind in lanes_of(is_robot):
         values = table[kind.column]
         changed = changes(values, None if seen is None else seen[kind.column])
         labels = [kind.label(float(values[index])) for index in changed]

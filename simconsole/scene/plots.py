@@ -59,6 +59,24 @@ def _pedal(name: str) -> Plot:
     return Plot(f"plots/{name}", f"{name} asked and applied, 0 to 1", asked, -0.05, 1.05)
 
 
+LINK_AGE: Final = Plot(
+    "plots/link_age",
+    "age of the newest command, ms",
+    (
+        Series("ROS", ROS_AGE_MS, 1.0, AUTOPILOT),
+        Series("CAN", ECU_AGE_MS, 1.0, PERSON),
+    ),
+)
+AUTHORITY: Final = Plot(
+    "plots/authority",
+    "autopilot's authority, 0 to 1",
+    (
+        Series("lateral", "arbitration.remote_lateral", 1.0, AUTOPILOT),
+        Series("longitudinal", "arbitration.remote_longitudinal", 1.0, OTHER),
+    ),
+    -0.05,
+    1.05,
+)
 PLOTS: Final[tuple[Plot, ...]] = (
     Plot(
         "plots/speed",
@@ -92,38 +110,42 @@ PLOTS: Final[tuple[Plot, ...]] = (
     ),
     _pedal("throttle"),
     _pedal("brake"),
-    Plot(
-        "plots/link_age",
-        "age of the newest command, ms",
-        (
-            Series("ROS", ROS_AGE_MS, 1.0, AUTOPILOT),
-            Series("CAN", ECU_AGE_MS, 1.0, PERSON),
-        ),
-    ),
-    Plot(
-        "plots/authority",
-        "autopilot's authority, 0 to 1",
-        (
-            Series("lateral", "arbitration.remote_lateral", 1.0, AUTOPILOT),
-            Series("longitudinal", "arbitration.remote_longitudinal", 1.0, OTHER),
-        ),
-        -0.05,
-        1.05,
-    ),
+    LINK_AGE,
+    AUTHORITY,
     Plot("plots/engine", "engine, rpm", (Series("engine", "vehicle.engine_radps", RPM_PER_RADPS, CAR),)),
 )
-PLOT_COLUMNS: Final[tuple[str, ...]] = tuple(
-    dict.fromkeys(
+ROBOT_PLOTS: Final[tuple[Plot, ...]] = (
+    Plot(
+        "plots/speed",
+        "speed asked and driven, m/s",
         (
-            *(line.column for plot in PLOTS for line in plot.series if line.column not in COMPUTED),
-            "vehicle.x_m",
-            "vehicle.y_m",
-            "ros.age_ticks",
-            "ecu.age_ticks",
-        )
-    )
+            Series("asked", "command.target_speed_mps", 1.0, APPLIED),
+            Series("robot", "vehicle.vx_mps", 1.0, CAR),
+        ),
+    ),
+    Plot(
+        "plots/yaw_rate",
+        "yaw rate asked and driven, deg/s, left positive",
+        (
+            Series("asked", "command.target_yaw_rate_radps", DEG_PER_RAD, APPLIED),
+            Series("robot", "vehicle.yaw_rate_radps", DEG_PER_RAD, CAR),
+        ),
+    ),
+    LINK_AGE,
+    AUTHORITY,
 )
-"""The columns of a state vector that the plots read."""
+"""Of what has neither engine nor steered wheels, and follows no path."""
+
+
+def plots_of(is_robot: bool) -> tuple[Plot, ...]:
+    """Return the plots of a robot, or of any other vehicle."""
+    return ROBOT_PLOTS if is_robot else PLOTS
+
+
+def plot_columns(is_robot: bool) -> tuple[str, ...]:
+    """Return the columns of a state vector that the plots read."""
+    lines = (line.column for plot in plots_of(is_robot) for line in plot.series if line.column not in COMPUTED)
+    return tuple(dict.fromkeys((*lines, "vehicle.x_m", "vehicle.y_m", "ros.age_ticks", "ecu.age_ticks")))
 
 
 class Follower:
@@ -142,16 +164,20 @@ class Follower:
         return along, lateral
 
 
-def plot_lines(table: Mapping[str, Array], tick_hz: int, follower: Follower) -> dict[str, Array]:
+def plot_lines(
+    table: Mapping[str, Array], tick_hz: int, follower: Follower, is_robot: bool = False
+) -> dict[str, Array]:
     """Return each plot's lines [N, lines], by its entity path; NaN where there is nothing to show.
 
     Args:
-        table: PLOT_COLUMNS columns of state vectors in their order.
+        table: `plot_columns` of state vectors in their order.
         tick_hz: ticks per second.
         follower: of the route.
+        is_robot: whose plots they are.
     """
     found = {**table, **_computed(table, tick_hz, follower)}
-    return {plot.path: np.column_stack([line.factor * found[line.column] for line in plot.series]) for plot in PLOTS}
+    plots = plots_of(is_robot)
+    return {plot.path: np.column_stack([line.factor * found[line.column] for line in plot.series]) for plot in plots}
 
 
 def _computed(table: Mapping[str, Array], tick_hz: int, follower: Follower) -> dict[str, Array]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from simconsole.scene.entities import Array
 from simconsole.scene.lanes import LANE_COLUMNS, Lane, changes, lane_changes
-from simconsole.scene.plots import PLOT_COLUMNS, Follower, plot_lines
+from simconsole.scene.plots import Follower, plot_columns, plot_lines
 from simconsole.scene.predicted_way import WAY_COLUMNS, Ways, ways
 from simconsole.scene.wheel_shapes import WHEEL_COLUMNS, ShownWheels, WheelShapes, wheel_shapes
 from simconsole.values.labels import mode_label, notice_label, reason_label
@@ -37,7 +37,7 @@ NEEDED: Final[tuple[str, ...]] = tuple(
     dict.fromkeys(
         (
             *(f"vehicle.{name}" for name in _OTHERS),
-            *PLOT_COLUMNS,
+            *plot_columns(is_robot=False),
             *LANE_COLUMNS,
             *WAY_COLUMNS,
             "arbitration.reason",
@@ -48,7 +48,7 @@ NEEDED: Final[tuple[str, ...]] = tuple(
         )
     )
 )
-"""The columns of a state vector that the scene reads of any vehicle."""
+"""The columns of a state vector that the scene reads of any vehicle; of a robot those of its plots, too."""
 TRAFFIC_LOST: Final = "ahead.traffic_lost"
 """Likewise; recordings of earlier versions have no such column."""
 
@@ -89,6 +89,7 @@ class ShownVehicle(NamedTuple):
 
     wheelbase_m: float = 0.0  # 0: it turns in place
     wheels: ShownWheels | None = None  # of a car
+    is_robot: bool = False
 
 
 NO_VEHICLE: Final = ShownVehicle()
@@ -124,7 +125,7 @@ def piece(
         follower: of the route; None: there is none.
     """
     places = {name: index for index, name in enumerate(columns)}
-    table = {name: vectors[:, places[name]] for name in NEEDED}
+    table = {name: vectors[:, places[name]] for name in (*NEEDED, *plot_columns(vehicle.is_robot))}
     table[TRAFFIC_LOST] = vectors[:, places[TRAFFIC_LOST]] if TRAFFIC_LOST in places else np.zeros(len(vectors))
     times_ns = ticks * NS_PER_S // tick_hz
     keep = np.flatnonzero(ticks % max(1, round(tick_hz / rate_hz)) == 0)
@@ -140,8 +141,8 @@ def piece(
         times_ns=times_ns[keep],
         positions=positions,
         quaternions=quaternions(kept["vehicle.yaw_rad"], kept["vehicle.pitch_rad"], kept["vehicle.roll_rad"]),
-        plots=plot_lines(kept, tick_hz, follower or Follower()),
-        lanes=lane_changes(table, times_ns, memory.seen),
+        plots=plot_lines(kept, tick_hz, follower or Follower(), vehicle.is_robot),
+        lanes=lane_changes(table, times_ns, memory.seen, vehicle.is_robot),
         strips=strips,
         entries=entries,
         ways=ways(table, ticks, times_ns, tick_hz, vehicle.wheelbase_m),

@@ -56,6 +56,7 @@ def scene_source(resolved: ResolvedSession, columns: tuple[str, ...], tick_hz: i
         vehicle=ShownVehicle(
             wheelbase_m=0.0 if platform.turns_in_place else platform.wheelbase_m,
             wheels=shown_wheels(vehicle) if isinstance(vehicle, CarProfile) else None,
+            is_robot=isinstance(vehicle, TurtlebotProfile),
         ),
         world=resolved.world,
         robot=vehicle if isinstance(vehicle, TurtlebotProfile) else None,

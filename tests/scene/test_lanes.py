@@ -27,6 +27,16 @@ def test_what_a_piece_before_has_told_is_not_told_again() -> None:
     assert all(not lane.times_ns for lane in lane_changes(seen, np.array([1, 2]), before))
 
 
+def test_a_robot_has_no_lane_of_what_it_does_not_have() -> None:
+    paths = {lane.path for lane in lane_changes(table(2), np.array([1, 2]), None, is_robot=True)}
+    assert {kind.path for kind in LANES} - paths == {
+        "controls/gear",
+        "controls/indicators",
+        "controls/hazard_lights",
+        "health/shifter",
+    }
+
+
 def test_every_label_of_a_state_has_its_colour() -> None:
     kinds = {kind.path: kind for kind in LANES}
     for path, value in (("lanes/mode", 3.0), ("lanes/takeover", 2.0), ("health/brake", 4.0), ("controls/gear", -1.0)):

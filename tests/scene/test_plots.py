@@ -1,16 +1,16 @@
 import numpy as np
 import pytest
 
-from simconsole.scene.plots import PLOT_COLUMNS, PLOTS, Follower, plot_lines
+from simconsole.scene.plots import PLOTS, ROBOT_PLOTS, Follower, plot_columns, plot_lines
 from simconsole.values.signals import NEVER_TICKS
 from tests.scene.drives import COLUMNS, RADIUS_M, TICK_HZ, route, rows
 
 AGE, CAN_AGE = "ros.age_ticks", "ecu.age_ticks"
 
 
-def table(count: int = 3000) -> dict[str, np.ndarray]:
+def table(count: int = 3000, is_robot: bool = False) -> dict[str, np.ndarray]:
     drive = rows(count)
-    found = {name: drive[:, COLUMNS.index(name)] for name in PLOT_COLUMNS}
+    found = {name: drive[:, COLUMNS.index(name)] for name in plot_columns(is_robot)}
     found[CAN_AGE] = np.full(count, NEVER_TICKS)
     return found
 
@@ -25,6 +25,17 @@ def test_every_plot_has_its_lines() -> None:
     lines = plot_lines(table(), TICK_HZ, Follower())
     assert {path: values.shape for path, values in lines.items()} == {p.path: (3000, len(p.series)) for p in PLOTS}
     assert line(lines, "plots/speed", "car")[-1] == pytest.approx(36.0)
+
+
+def test_a_robot_has_its_two_speeds_and_nothing_of_a_car() -> None:
+    seen = table(3, is_robot=True)
+    assert not [name for name in seen if "engine" in name or "torque" in name or "road_wheel" in name]
+    seen["command.target_yaw_rate_radps"] = np.array([0.0, 1.0, -1.0])
+    seen["vehicle.yaw_rate_radps"] = np.array([0.0, 0.5, -0.5])
+    lines = plot_lines(seen, TICK_HZ, Follower(), is_robot=True)
+    assert list(lines) == [plot.path for plot in ROBOT_PLOTS]
+    assert lines["plots/yaw_rate"] == pytest.approx(np.degrees([[0.0, 0.0], [1.0, 0.5], [-1.0, -0.5]]))
+    assert lines["plots/speed"][:, 1] == pytest.approx(seen["vehicle.vx_mps"])
 
 
 def test_the_lateral_error_is_the_distance_to_the_left_of_the_path() -> None:

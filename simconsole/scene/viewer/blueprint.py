@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 from simconsole.scene.entities import Array, on_map
 from simconsole.scene.lanes import CONTROLS, HEALTH, WHO_DRIVES
-from simconsole.scene.plots import PLOTS, Plot
+from simconsole.scene.plots import Plot, plots_of
 from simconsole.scene.viewer.standing import MAP
 
 if TYPE_CHECKING:
@@ -40,10 +40,11 @@ def blueprint(job: Job, path: Array | None, is_live: bool = False) -> rrb.Bluepr
     controls = rrb.StateTimelineView(name="controls", origin=f"/{CONTROLS}")
     latency = rrb.TextDocumentView(name="latency", origin=f"/{LATENCY}")
     camera = rrb.Spatial2DView(name="camera", origin=f"/{CAMERA}")
-    beside = rrb.Tabs(log, controls, latency, active_tab="log")
+    is_robot = job.vehicle.is_robot
+    beside = rrb.Tabs(log, *(() if is_robot else (controls,)), latency, active_tab="log")
     left = rrb.Vertical(who, _chase(job), rrb.Horizontal(health, beside), row_shares=[2.0, 4.6, 3.4])
-    half = (len(PLOTS) + 1) // 2
-    lines = [_plot_view(plot) for plot in PLOTS]
+    lines = [_plot_view(plot) for plot in plots_of(is_robot)]
+    half = (len(lines) + 1) // 2
     columns = rrb.Horizontal(rrb.Vertical(*lines[:half]), rrb.Vertical(*lines[half:]))
     above = rrb.Horizontal(_plan(path), camera) if job.has_camera else _plan(path)
     right = rrb.Vertical(above, columns, row_shares=[3, 7])

@@ -12,11 +12,11 @@ import numpy as np
 
 from simconsole.scene.entities import MODE_COLOURS, PAINT, WorldShapes, on_map, raised
 from simconsole.scene.lamp_shapes import LampShapes
-from simconsole.scene.lanes import LANES, LINK_COLOURS, LINK_LANE, Lane
+from simconsole.scene.lanes import LINK_COLOURS, LINK_LANE, Lane, lanes_of
 from simconsole.scene.latency_table import latency_table
 from simconsole.scene.lidar_shapes import ECHO, LidarShapes
 from simconsole.scene.plan_shapes import PlanShapes
-from simconsole.scene.plots import APPLIED, AUTOPILOT, PLOTS
+from simconsole.scene.plots import APPLIED, AUTOPILOT, plots_of
 from simconsole.scene.predicted_way import Ways
 from simconsole.scene.road_user_shapes import RoadUserShapes
 from simconsole.scene.timeline import Entry, Piece, Strip, Ticks
@@ -224,10 +224,11 @@ class RerunView:
         if self._job.scanner is not None:
             self._still("world/lidar", rr.Points3D.from_fields(colors=[ECHO], radii=[-2.0]))
             self._still(f"{MAP}/lidar", rr.Points2D.from_fields(colors=[ECHO], radii=[-WAY_PX]))
-        for plot in PLOTS:
+        is_robot = self._job.vehicle.is_robot
+        for plot in plots_of(is_robot):
             names = [line.name for line in plot.series]
             self._still(plot.path, rr.SeriesLines(names=names, colors=[line.colour for line in plot.series]))
-        for path, colours in ((LINK_LANE, LINK_COLOURS), *((kind.path, kind.colours) for kind in LANES)):
+        for path, colours in ((LINK_LANE, LINK_COLOURS), *((kind.path, kind.colours) for kind in lanes_of(is_robot))):
             if colours:
                 states = rr.StateConfiguration(values=list(colours), colors=list(colours.values()))
                 self._still(path, states)
