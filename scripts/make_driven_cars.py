@@ -14,10 +14,12 @@ PAGE = Path(__file__).resolve().parents[1] / "docs" / "driven_cars.md"
 INTRODUCTION = """# The driven cars
 
 Written by `scripts/make_driven_cars.py`, which drives every manoeuvre anew through the whole console; nobody types a
-figure. Beside each stands the usual range of the class, and where it comes from (numbers: below the table). A figure
-out of range is marked 🔴. Hatchback and light van are nobody's cars; the BMW 320i is the car of CommonRoad's models,
-with their gaps: neutral steer, no anti-dive, no driver aids, nothing at the rim (n/a), no losses (so it does not roll
-down to the speed at which braking begins: none), and the hatchback's engine and brakes. Its red figures are theirs.
+figure. Beside each stands a range of the class, and where it was read (numbers: below the table); where nothing was
+found, that is said, and the range is an estimate. "Computed" is by `scripts/validation/single_track.py`, from what was
+measured of real cars. A figure out of range is marked 🔴. Hatchback and light van are nobody's cars; the BMW 320i is
+the car of CommonRoad's models, with their gaps: neutral steer, no anti-dive, no driver aids, nothing at the rim (n/a),
+no losses (so it does not roll down to the speed at which braking begins: none), and the hatchback's engine and brakes.
+Its red figures are theirs.
 
 | Figure | Hatchback | Light van | BMW 320i | cars | vans | source of the range |
 | --- | --- | --- | --- | --- | --- | --- |

@@ -11,23 +11,38 @@ from simconsole.profiles.vehicle import CarProfile
 
 CARS = ("hatchback", "light_van", "commonroad_bmw320i")
 
-NORMAN = "assisted cars; the test is that of Norman, SAE 840069, the range general knowledge"
+NONE = "no published range found; engineering estimate"
+NORMAN = f"assisted cars; the test is that of Norman, SAE 840069; {NONE}"
 SEGEL = (
-    "assisted cars; the test is that of Norman, SAE 840069; drivers found 23 N m/g near the optimum [8]; the range "
-    "around it general knowledge"
+    "assisted cars; the test is that of Norman, SAE 840069; drivers found 23 N m/g near the optimum [8]; around it: "
+    f"{NONE}"
 )
-SHARP = "Sharp and Granger, Proc. IMechE D 217, 2003: with assistance"
-ADAC = "about 500 brake tests of ADAC: mean 36.4 m, 31.3 to 47.8 m"
-GENERAL = "usual of the class; general knowledge, no table was at hand"
+PARKING = (
+    "assisted cars; makers let workshops find at most 6 N m [12], 7.8 N m [13], 29 N at the rim, 5.4 N m at 0.185 m "
+    f"[14]; the narrower range and its low end: {NONE}"
+)
+BRAKES = (
+    "about 500 tests of ADAC: mean 36.4 m, best of the Golf class 33.1 m, worst of the vans 47.8 m [15]; an older Golf "
+    "39.5 m [16]; the ends within that: engineering estimate"
+)
 PERFORMANCE = "cars: [1]; vans: [2]"
-SINGLE_TRACK = "cars: [3] and [4], which measured 3.6 deg/g at 2.67 m; vans: none was found, that of cars"
+TOP_SPEED = f"{PERFORMANCE}; the BMW 320i of 1990 itself: 214 km/h [17]"
+SINGLE_TRACK = "cars: [3] and [4], which measured 3.6 deg/g at 2.67 m; vans: no published range found, that of cars"
 CHARACTERISTIC = f"{SINGLE_TRACK}; taught as usual: 65 to 100 km/h [9]"
-ROADHOLDING = "two hatchbacks had 0.83 g [5]; the range around it general knowledge"
+ROADHOLDING = (
+    "two hatchbacks had 0.83 g [5], a tall estate on solid axles 7.05 m/s² [7]; the ranges around them: engineering "
+    "estimate"
+)
 ROLL = (
     "measured were 3.5 to 4.4 deg/g [6], [7]; called typical: small cars 5, large ones 7 deg/g [10]; the ranges "
-    "around them general knowledge"
+    "around them: engineering estimate"
 )
-ZOMOTOR = "Zomotor, Fahrwerktechnik: Fahrverhalten; not looked up"
+TRANSIENT = "cars: single tracks of [3], [4] and [11], computed"
+RESPONSE = f"{TRANSIENT}; vans: up to the 0.28 s that a tall estate had at 43 km/h [7]"
+OVERSHOOT = f"{TRANSIENT}; vans: down to the 0.8 % of [7]"
+PEAK = f"{TRANSIENT}: 0.6 to 1 Hz; tyres and roll, which they lack, put it higher, and how much: {NONE}"
+GAIN = f"{TRANSIENT}; vans: {NONE}"
+LAG = f"{TRANSIENT}; vans: {NONE}"
 
 SOURCES = (
     "Cars of topgear.com on 24 February 2014, data set 'topgear' of github.com/STAN-UAntwerp/robpy: the eight "
@@ -37,17 +52,27 @@ SOURCES = (
     "openpilot steers compact cars, tyre stiffness 0.385 to 0.82 of that of its reference: 1.15 to 2.45 deg/g, "
     "131 to 90 km/h at 2.7 m.",
     "K. Tse, Cornering Compliances of a Typical Road Vehicle, 2019, github.com/kktse/kktse.github.io: a front-driven "
-    "saloon as its maker built it, by steady bends and pulses.",
+    "saloon as its maker built it (Acura TSX of 2007), by steady bends and pulses.",
     "Car and Driver, Performance and Driving Impressions (Hyundai Elantra GT, Volkswagen Golf), autos.yahoo.com.",
     "K. Tse, github.com/kktse/kktse.github.io, post of 21 September 2022: Toyota Prius 4.4 deg/g (R. van Hoek, "
     "Eindhoven University of Technology, 2016), Jaguar F-Pace 3.5 deg/g (MotorTrend, 2016).",
     "M. K. Salaani and G. J. Heydinger, SAE 2000-01-0700, as the validation of the simulator Skidpad "
-    "reads its plots: Jeep Cherokee 3.6 deg/g.",
+    "reads its plots (github.com/CS-Software-LLC/skidpad, docs/validation/nhtsa-jeep-cherokee.md): NHTSA's Jeep "
+    "Cherokee of 1997: roll 3.6 deg/g, 7.05 m/s² at most, yaw rate 0.28 s from half of the step to 90 %, "
+    "overshoot 0.8 %.",
     "L. Segel, An Investigation of Automobile Handling as Implemented by a Variable-Steering Automobile, Human "
     "Factors, August 1964; its abstract at swov.nl: 17 ft lb/g, by five drivers in one car.",
     "euromotor.org, slides on driving dynamics (presentation 6, slide 16): characteristic velocity, of today's "
     "vehicles.",
     "A. Rastogi, On a Roll: Roll rates in a Vehicle, 7 August 2020, archit-rstg.medium.com: indicative values.",
+    "K. Tse, Cornering Compliances and Transients, 2019, github.com/kktse/kktse.github.io: Honda Civic Si of 2012, "
+    "set up for the race track, by steady bends and pulses.",
+    "Opel Corsa C, check of effort on a steering wheel: corsa-c.ru, 5.2.2.",
+    "Mazda 3 of 2022, workshop manual, steering force inspection: lemon.leoquadpod.com.",
+    "Honda Jazz and Fit, workshop manual, power steering assist check: hondafitjazzge6ge8.automotive-manuals.com.",
+    "autogazette.de, October 2016, and nachrichten-muenchen.de, on the brake tests of ADAC in four years.",
+    "motor-talk.de, Der Golf-Kombi bremst besser als ein Audi R8: Golf IV of 2001, by ADAC.",
+    "BMW Group Classic, BMW 320i (E36): bmwgroup-classic.com.",
 )
 """Where ranges were read, in the order of their numbers."""
 
@@ -67,9 +92,9 @@ class Figure(NamedTuple):
 
 FIGURES = (
     Figure("0 to 100 km/h", "acceleration", "time_s", "s", (9.3, 12.6), (12.0, 19.2), PERFORMANCE),
-    Figure("Top speed", "acceleration", "top_speed_kmh", "km/h", (185.0, 203.0), (152.0, 183.0), PERFORMANCE),
-    Figure("Braking 100 to 0 km/h", "straight_braking", "stopping_distance_m", "m", (33.0, 42.0), (36.0, 47.8), ADAC),
-    Figure("Dive", "brake_gently", "pitch_angle_gradient_deg_per_g", "deg/g", (1.0, 1.7), (1.0, 1.7), GENERAL),
+    Figure("Top speed", "acceleration", "top_speed_kmh", "km/h", (185.0, 203.0), (152.0, 183.0), TOP_SPEED),
+    Figure("Braking 100 to 0 km/h", "straight_braking", "stopping_distance_m", "m", (33.0, 42.0), (36.0, 47.8), BRAKES),
+    Figure("Dive", "brake_gently", "pitch_angle_gradient_deg_per_g", "deg/g", (1.0, 1.7), (1.0, 1.7), NONE),
     Figure(
         "Understeer gradient",
         "steady_state_circle",
@@ -103,9 +128,15 @@ FIGURES = (
         9.80665,
     ),
     Figure(
-        "Step: yaw rate response", "step_steer", "yaw_rate_response_time_s", "s", (0.08, 0.25), (0.08, 0.30), ZOMOTOR
+        "Step: yaw rate response",
+        "step_steer",
+        "yaw_rate_response_time_s",
+        "s",
+        (0.138, 0.186),
+        (0.138, 0.28),
+        RESPONSE,
     ),
-    Figure("Step: overshoot", "step_steer", "yaw_rate_overshoot_percent", "%", (0.0, 30.0), (0.0, 40.0), ZOMOTOR),
+    Figure("Step: overshoot", "step_steer", "yaw_rate_overshoot_percent", "%", (4.4, 32.6), (0.8, 32.6), OVERSHOOT),
     Figure(
         "Sine: frequency of the peak",
         "frequency_response",
@@ -113,17 +144,17 @@ FIGURES = (
         "Hz",
         (0.6, 1.5),
         (0.5, 1.5),
-        ZOMOTOR,
+        PEAK,
     ),
-    Figure("Sine: gain at the peak", "frequency_response", "yaw_rate_peak_ratio", "", (1.0, 1.8), (1.0, 2.0), ZOMOTOR),
+    Figure("Sine: gain at the peak", "frequency_response", "yaw_rate_peak_ratio", "", (1.0, 1.43), (1.0, 2.0), GAIN),
     Figure(
         "Sine: lag at 1 Hz",
         "frequency_response",
         "yaw_rate_lag_at_1_hz_deg",
         "deg",
-        (15.0, 60.0),
+        (25.9, 44.3),
         (20.0, 70.0),
-        ZOMOTOR,
+        LAG,
     ),
     Figure(
         "Braking in a bend: yaw rate after 1 s",
@@ -132,9 +163,9 @@ FIGURES = (
         "",
         (1.0, 1.3),
         (1.0, 1.3),
-        ZOMOTOR,
+        NONE,
     ),
-    Figure("Lift-off: yaw rate after 1 s", "lift_off", "yaw_rate_ratio_at_1_s", "", (1.0, 1.2), (1.0, 1.2), ZOMOTOR),
+    Figure("Lift-off: yaw rate after 1 s", "lift_off", "yaw_rate_ratio_at_1_s", "", (1.0, 1.2), (1.0, 1.2), NONE),
     Figure(
         "Weave: gradient at 0 g",
         "weave",
@@ -155,7 +186,7 @@ FIGURES = (
         (0.02, 0.08),
         NORMAN,
     ),
-    Figure("Parking torque", "parking_effort", "parking_torque_nm", "N m", (2.0, 5.0), (2.0, 5.0), SHARP),
+    Figure("Parking torque", "parking_effort", "parking_torque_nm", "N m", (2.0, 5.0), (2.0, 5.0), PARKING),
 )
 
 MANOEUVRES: dict[str, dict[str, Any]] = {

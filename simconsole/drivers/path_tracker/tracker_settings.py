@@ -10,16 +10,16 @@ TRACKERS: Final = ("preview", "pure_pursuit", "stanley")
 class CarModel(NamedTuple):
     """The controller's linear single-track model, by default of the car in profiles/vehicles/hatchback.yaml.
 
-    The axles' stiffness is a twelfth below the profile's, which is that of small slip: measured as the value with
-    which the car follows curves of 2.5 m/s2 best (RMS 0.1 cm; 0.4 cm with the profile's own).
+    The axles' stiffness is an eighth below the profile's, which is that of small slip: measured as the value with
+    which the car follows random courses best.
     """
 
     mass_kg: float = 1300.0
     yaw_inertia_kgm2: float = 1900.0
     front_m: float = 1.04  # centre of gravity to front axle
     rear_m: float = 1.56  # centre of gravity to rear axle
-    front_stiffness_nprad: float = 84_000.0  # both wheels of the axle
-    rear_stiffness_nprad: float = 70_000.0
+    front_stiffness_nprad: float = 80_300.0  # both wheels of the axle
+    rear_stiffness_nprad: float = 66_900.0
     steering_lag_s: float = 0.05
     max_road_wheel_rad: float = 0.6
 
