@@ -49,8 +49,15 @@ def learner_step(
         place: where on it, see `lane_view`; it is followed.
         execution: that of the console.
     """
-    asked_at = _SPEED if kind == RemoteKind.SPEED else _ACCEL
-    held = _Held(rows, float(kind), asked_at, path, place, console.roads, constants(console))
+    held = _Held(
+        rows=rows,
+        kind=float(kind),
+        asked_at=_SPEED if kind == RemoteKind.SPEED else _ACCEL,
+        path=path,
+        place=place,
+        roads=console.roads,
+        constants=constants(console),
+    )
     if console.platform.compiled:
         return holding(execution(_step_of(console.ticks, lane_view)), held)
     return holding(_step_of(console.ticks, execution(lane_view)), held)
