@@ -13,7 +13,9 @@ import numpy as np
 
 from simconsole.cli.api.environment import DrivingEnvironment
 from simconsole.tick.advance import advance_block
+from simconsole.values.state_vector import LAYOUT
 
+SEQUENCE = LAYOUT.ros.at("sequence")
 STEPS = 400
 BAR = 1.3
 
@@ -45,8 +47,9 @@ def measured(environment: DrivingEnvironment, rounds: int) -> tuple[float, float
         environment.reset(seed=1, options={"s_m": 0.0})
         for _ in range(STEPS // 2):  # at the same speeds as above
             environment.step(action)
-        rows, console, vector = environment._next.rows, environment._console, environment._vector
+        console, vector, rows = environment._console, environment._rows[0], environment._rows[1:]
         assert console is not None
+        rows[:, SEQUENCE] += 1.0  # the command of a step is a new one
         began_s = time.process_time()
         for _ in range(STEPS):
             advance_block(vector, rows, console)

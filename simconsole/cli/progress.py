@@ -79,6 +79,11 @@ class Progress:
             left = self._left(min(self._shares.values())).partition(",")[2]  # the last one decides; its share is told
             self._write(f"{self._what}: {shares}{',' if left else ''}{left}")
 
+    def say(self, line: str) -> None:
+        """Say a line that stays, in the place of the one that is written over."""
+        self._write("")
+        say(line)
+
     def _is_due(self) -> bool:
         now_s = time.monotonic()
         if now_s < self._next_s:

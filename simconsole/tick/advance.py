@@ -80,7 +80,8 @@ class Console(NamedTuple):
     force_feedback: Callable[[Row, Row, Row, float], None] | None  # None: the wheel has no motor
     roads: RoadRules | None  # None: the world has no rules
     look_around: Callable[[Row, Row, RoadRules, float], None] | None  # None: likewise
-    block: Callable[[Row, Row, Row, Row, Row, Row, Row, float, int], None]  # see `advance_block`; it holds the roads
+    ticks: Stage  # one tick after the other, as `execution` takes it: a kernel, if the platform's step is compiled
+    block: Callable[[Row, Row, Row, Row, Row, Row, Row, float, int], None]  # `ticks` at work; it holds the roads
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -117,11 +118,13 @@ def build_console(
     look, struck = (None, None) if roads is None else (look_around, strike)
     step = execution(platform.step) if platform.compiled else platform.step
     if platform.compiled:
-        block = _whole(execution, struck, platform.step, look, torque)
+        ticks = _whole(struck, platform.step, look, torque)
+        block = execution(ticks)
     else:
         stages = (None if one is None else execution(one) for one in (struck, look, torque))
         struck_at_work, look_at_work, torque_at_work = stages
-        block = _block_of(in_order(execution(decide), struck_at_work, step, look_at_work, torque_at_work, None))
+        ticks = _block_of(in_order(execution(decide), struck_at_work, step, look_at_work, torque_at_work, None))
+        block = ticks
     return Console(
         tick_hz=tick_hz,
         tick_s=1.0 / tick_hz,
@@ -138,16 +141,15 @@ def build_console(
         force_feedback=None if torque is None else execution(torque),
         roads=roads,
         look_around=None if look is None else execution(look),
+        ticks=ticks,
         block=holding(block, roads),
     )
 
 
 @lru_cache(maxsize=8)  # platforms of a session that are alike have one
-def _whole(
-    execution: Execution, strike: Stage | None, step: Step, look: Stage | None, torque: Stage | None
-) -> Callable[..., Any]:
-    """Return the kernel that makes one tick after the other, compiled as a whole."""
-    return execution(_block_of(in_order(decide, strike, step, look, torque, None)))
+def _whole(strike: Stage | None, step: Step, look: Stage | None, torque: Stage | None) -> Stage:
+    """Return the kernel that makes one tick after the other, to be compiled as a whole."""
+    return _block_of(in_order(decide, strike, step, look, torque, None))
 
 
 def _initial(platform: Platform) -> Row:
@@ -190,7 +192,7 @@ def advance_vector(previous: Row, inputs: Row | tuple[float, ...], console: Cons
     row[:INPUT_WIDTH] = inputs
     stages = console.decide, console.strike, console.step, console.look_around, console.force_feedback
     tick = in_order(*stages, mark)
-    tick(console.roads, previous, row, *_constants(console))
+    tick(console.roads, previous, row, *constants(console))
     return row
 
 
@@ -216,16 +218,10 @@ def advance_block(previous: Row, rows: Row, console: Console) -> None:
             tell of other platforms; the rest is written.
         console: which console.
     """
-    console.block(previous, rows, *_constants(console))
+    console.block(previous, rows, *constants(console))
 
 
-def block_of(console: Console) -> Callable[[Row, Row], None]:
-    """Return `advance_block` of this console, for whoever calls it for a few ticks again and again."""
-    block, constants = console.block, _constants(console)
-    return lambda previous, rows: block(previous, rows, *constants)
-
-
-def _constants(console: Console) -> tuple[Row, Row, Row, Row, Row, float, int]:
+def constants(console: Console) -> tuple[Row, Row, Row, Row, Row, float, int]:
     """Return what a tick takes beside the state vectors and the roads."""
     on, start = console.platform, (console.initial, console.restarted)
     return console.settings, on.parameters, on.ground, *start, console.tick_s, console.substeps

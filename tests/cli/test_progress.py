@@ -139,3 +139,11 @@ def test_ticks_are_counted_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> Non
     with Progress("importing") as progress:
         progress.count(7)
     assert terminal.getvalue().endswith("importing: 7 ticks\r\x1b[K")
+
+
+def test_a_line_that_stays_takes_the_place_of_the_one_that_is_written_over(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = Terminal()
+    monkeypatch.setattr("sys.stderr", terminal)
+    with Progress("sweep") as progress:
+        progress.say("it waits")
+    assert terminal.getvalue() == "\r\x1b[Ksweep ...\r\x1b[Ksimconsole: it waits\n\r\x1b[K"

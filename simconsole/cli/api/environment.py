@@ -7,7 +7,7 @@ ticks as lie between two answers, made at once.
 import math
 from collections.abc import Sequence
 from functools import partial
-from typing import Any, Final, NamedTuple, SupportsFloat
+from typing import Any, Final, SupportsFloat
 
 import msgspec
 import numpy as np
@@ -15,15 +15,16 @@ from numpy.typing import NDArray
 
 from simconsole.cli.api.session import Session, load
 from simconsole.profiles.session import Start
-from simconsole.tick.advance import Console, block_of
+from simconsole.tick.advance import Console
 from simconsole.tick.assembly import ResolvedSession, assemble
+from simconsole.tick.learner_step import learner_step
 from simconsole.values.errors import ProfileError
 from simconsole.values.host.jit import compiled, plain
-from simconsole.values.kernels import Row, holding
+from simconsole.values.kernels import Row
 from simconsole.values.signals import NO_AHEAD, NO_COMMAND, NO_EVENTS, NO_SAMPLE, Event, RemoteKind
 from simconsole.values.state_vector import INPUT_WIDTH, LAYOUT, Snapshot, TickInputs, input_vector
 from simconsole.values.units import DEG_PER_RAD
-from simconsole.world.lane_view import MOST, LaneView, lane_view, path_of, place_at
+from simconsole.world.lane_view import MOST, LaneView, path_of, place_at
 
 try:
     import gymnasium
@@ -40,22 +41,9 @@ START_HEADING_RAD: Final = 0.03
 LEFT_LANE: Final = -10.0
 """Reward of the step in which the lane was left."""
 
-_ROS: Final = LAYOUT.ros
-_SEQUENCE, _AGE, _KIND = _ROS.at("sequence"), _ROS.at("age_ticks"), _ROS.at("kind")
-_WHEEL, _SPEED, _ACCEL = _ROS.at("road_wheel_rad"), _ROS.at("speed_mps"), _ROS.at("accel_mps2")
+_AGE: Final = LAYOUT.ros.at("age_ticks")
 _EVENTS: Final = LAYOUT.events.at("events")
 _ENGAGE_STEPS: Final = 50
-_SEEN: Final = len(LaneView._fields)
-
-
-class _Block(NamedTuple):
-    """The ticks of one step: their rows, the last of them, and the columns of what is commanded."""
-
-    rows: Row
-    last: Row
-    sequence: Row
-    wheel: Row
-    asked: Row
 
 
 class DrivingEnvironment(gymnasium.Env[Observation, Action]):
@@ -110,11 +98,10 @@ class DrivingEnvironment(gymnasium.Env[Observation, Action]):
         self._speed_mps, self._half_lane_m = speed_mps, half_lane_m
         self._most_rad = most_road_wheel_rad
         self._most_steps = round(longest_s * 1000.0 / step_ms)
-        self._look = holding(compiled(lane_view), self._path)
         bounds = np.array(MOST, np.float32)
         self.observation_space = gymnasium.spaces.Box(-bounds, bounds, dtype=np.float32)
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (1 if speed_mps is not None else 2,), np.float32)
-        self._blank = np.zeros(_SEEN, np.float32)
+        self._blank = np.zeros(len(LaneView._fields), np.float32)
         self._console: Console | None = None
 
     def reset(
@@ -126,15 +113,22 @@ class DrivingEnvironment(gymnasium.Env[Observation, Action]):
         s_m = 0.5 * (1.0 + drawn[0]) * self._route.length_m
         if options is not None and "s_m" in options:
             s_m = float(options["s_m"])
-        there, state = assemble(self._started(s_m, drawn[1:]), plain)  # nothing is compiled or run by it
+        there = assemble(self._started(s_m, drawn[1:]), plain)[0]  # nothing is compiled or run by it
         if self._console is None:
-            self._console = assemble(self._resolved, compiled)[0]
-        self._console = self._console._replace(platform=there.platform, initial=there.initial)
-        self._vector, self._place = state.vector, place_at(self._path, s_m)
-        self._make_ticks = block_of(self._console)
-        self._sequence, self._steps = 0.0, 0
-        self._engage(self._console.width)
-        return self._observe()[0], {"s_m": float(self._place[2])}
+            self._console = self._compiled()
+        self._console.initial[:] = self._rows[0] = there.initial
+        self._rows[1:, :INPUT_WIDTH] = _quiet(self._ticks)
+        self._place[:] = place_at(self._path, s_m)
+        self._steps = 0
+        return self._engaged(), {"s_m": float(self._place[2])}
+
+    def _compiled(self) -> Console:
+        """Return the console, and make ready what its steps hold: it is written anew at each reset."""
+        console = assemble(self._resolved, compiled)[0]
+        self._rows, self._place = np.zeros((1 + self._ticks, console.width)), place_at(self._path, 0.0)
+        kind = RemoteKind.ACCELERATION if self._speed_mps is None else RemoteKind.SPEED
+        self._advance = learner_step(console, self._rows, kind, self._path, self._place, compiled)
+        return console
 
     def _started(self, s_m: float, off: NDArray[np.float64]) -> ResolvedSession:
         """Return the session that starts `s_m` along the route, off it by shares of the most."""
@@ -149,63 +143,37 @@ class DrivingEnvironment(gymnasium.Env[Observation, Action]):
         scenario = msgspec.structs.replace(session.scenario, start=start)
         return msgspec.structs.replace(self._resolved, session=msgspec.structs.replace(session, scenario=scenario))
 
-    def _engage(self, width: int) -> None:
-        """Command standstill until autonomy is granted, and make ready for the first step; state vectors of `width`.
+    def _engaged(self) -> Observation:
+        """Command standstill until autonomy is granted; return what is seen then.
 
         Raises:
             ProfileError: it never is.
         """
-        self._next, self._newest = (self._block(width, 0.0, Event.REQUEST_AUTONOMOUS) for _ in range(2))
+        seen = self._blank.copy()
+        self._rows[1, _EVENTS] = Event.REQUEST_AUTONOMOUS
         for _ in range(_ENGAGE_STEPS):
-            self._advance(0.0)
-            if self._observe()[1]:
-                self._next, self._newest = (self._block(width, self._speed_mps or 0.0) for _ in range(2))
-                return
+            if self._advance(0.0, 0.0, seen):
+                self._rows[1, _EVENTS] = 0.0
+                return seen
         raise ProfileError("features.control: autonomy is not granted: person_required: false, and nobody in the seat")
-
-    def _block(self, width: int, asked: float, events: int = 0) -> _Block:
-        """Return rows that the ticks of a step are made in; two take turns, as each begins where another has ended."""
-        by_speed = self._speed_mps is not None
-        rows = _quiet_rows(self._ticks, width)
-        rows[0, _EVENTS] = events
-        rows[:, _KIND] = RemoteKind.SPEED if by_speed else RemoteKind.ACCELERATION
-        columns = (_SEQUENCE, _WHEEL, _SPEED if by_speed else _ACCEL)
-        block = _Block(rows, rows[-1], *(rows[:, at] for at in columns))
-        block.asked.fill(asked)
-        return block
 
     def step(self, action: Action) -> tuple[Observation, SupportsFloat, bool, bool, dict[str, Any]]:
         """Command, and make the ticks of a step."""
-        if self._speed_mps is None:
+        if (asked := self._speed_mps) is None:
             share = min(max(action.item(1), -1.0), 1.0)
-            self._next.asked.fill(share * (2.0 if share > 0.0 else 4.0))
-        before_m = self._place.item(2)
-        self._advance(min(max(action.item(0), -1.0), 1.0) * self._most_rad)
-        seen, driving = self._observe()
+            asked = share * (2.0 if share > 0.0 else 4.0)
+        before_m, seen = self._place.item(2), self._blank.copy()
+        driving = self._advance(min(max(action.item(0), -1.0), 1.0) * self._most_rad, asked, seen)
         self._steps += 1
         off = abs(self._place.item(3)) / self._half_lane_m
         ended = off > 1.0 or not driving
         reward = LEFT_LANE if ended else (self._place.item(2) - before_m) * (1.0 - off)
         return seen, reward, ended, self._steps >= self._most_steps, {}
 
-    def _advance(self, road_wheel_rad: float) -> None:
-        block = self._next
-        self._sequence += 1.0
-        block.sequence.fill(self._sequence)
-        block.wheel.fill(road_wheel_rad)
-        self._make_ticks(self._vector, block.rows)
-        self._vector = block.last
-        self._next, self._newest = self._newest, block
-
-    def _observe(self) -> tuple[Observation, bool]:
-        """Return what is seen, in a new array, and whether automation drives."""
-        seen = self._blank.copy()
-        return seen, self._look(self._vector, self._place, seen)
-
     @property
     def snapshot(self) -> Snapshot:
         """The tick that the last step has ended with."""
-        return Snapshot(self._steps * self._ticks, self._resolved.session.mode.tick_hz, self._vector.copy())
+        return Snapshot(self._steps * self._ticks, self._resolved.session.mode.tick_hz, self._rows[0].copy())
 
 
 def vector_environment(count: int, session: Session | str = "bridge", **options: Any) -> AsyncVectorEnv:
@@ -225,9 +193,8 @@ def _for_learning(resolved: ResolvedSession) -> ResolvedSession:
     return msgspec.structs.replace(resolved, session=msgspec.structs.replace(session, features=features))
 
 
-def _quiet_rows(ticks: int, width: int) -> Row:
-    """Return rows in which nobody is in the seat and a command grows older."""
-    rows = np.zeros((ticks, width))
-    rows[:, :INPUT_WIDTH] = input_vector(TickInputs(NO_SAMPLE, NO_COMMAND, NO_EVENTS, ahead=NO_AHEAD))
-    rows[:, _AGE] = np.arange(ticks)
-    return rows
+def _quiet(ticks: int) -> Row:
+    """Return the inputs of ticks in which nobody is in the seat and a command grows older."""
+    inputs = np.tile(input_vector(TickInputs(NO_SAMPLE, NO_COMMAND, NO_EVENTS, ahead=NO_AHEAD)), (ticks, 1))
+    inputs[:, _AGE] = np.arange(ticks)
+    return inputs

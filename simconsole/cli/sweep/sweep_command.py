@@ -37,7 +37,7 @@ def sweep(options: Namespace) -> Outcome:
     folder = Path(options.out or Path("out") / f"sweep-{Path(options.plan).stem}")
     with Journal(folder, plan) as journal:
         waiting = [task for task in plan.tasks if task.index not in journal.results]
-        with Progress("sweep") as progress, closing(_driven(waiting, options)) as driven:
+        with Progress("sweep") as progress, closing(_driven(waiting, options, progress)) as driven:
             for result in driven:
                 journal.add(result)
                 progress.done(f"{len(plan.tasks)} drives", len(journal.results) / len(plan.tasks))
@@ -59,9 +59,9 @@ def _again(task: Task, plan: str, folder: Path) -> str:
     return command if of_many else f"{command}; simconsole replay {out}"
 
 
-def _driven(tasks: Sequence[Task], options: Namespace) -> Generator[TaskResult, None, None]:
+def _driven(tasks: Sequence[Task], options: Namespace, progress: Progress) -> Generator[TaskResult, None, None]:
     if options.engine == "dask":
-        return drive_on_dask(tasks, options.scheduler)
+        return drive_on_dask(tasks, options.scheduler, progress.say)
     return drive_here(tasks, options.jobs)
 
 

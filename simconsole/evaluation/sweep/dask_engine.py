@@ -7,7 +7,7 @@ of Dask's is a batch of drives, as many as are driven in seconds.
 import asyncio
 import threading
 import time
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Callable, Collection, Generator, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, Final
 
@@ -27,11 +27,18 @@ _TURNS: Final = 4
 """So many batches for each thread: one that is faster, or comes later, takes of the others'."""
 
 
-def drive_on_dask(tasks: Sequence[Task], scheduler: str) -> Generator[TaskResult, None, None]:
+def drive_on_dask(
+    tasks: Sequence[Task], scheduler: str, told: Callable[[str], None]
+) -> Generator[TaskResult, None, None]:
     """Drive tasks by the workers of a scheduler (tcp://HOST:PORT); yield results as they come.
 
     A worker drives them in processes of its own, one for each of its threads. Drives of a worker that has ended go to
     the others. Files that sessions name, traces, scripts and road maps, must lie where this machine has them.
+
+    Args:
+        tasks: what is driven.
+        scheduler: its address.
+        told: is called with a line where there is no worker yet: the drives wait for one.
 
     Raises:
         SimConsoleError: no such scheduler, it has ended, it or a worker has no simconsole or another version of it, or
@@ -47,7 +54,10 @@ def drive_on_dask(tasks: Sequence[Task], scheduler: str) -> Generator[TaskResult
             for failure in client.run(check_version, __version__, on_error="return").values():
                 if failure is not None:  # it would end with its first drive
                     raise ImportError(f"a worker: {one_line(failure)}")
-            batches.give(tasks, batch_size(len(tasks), sum(client.nthreads().values())))
+            threads = sum(client.nthreads().values())
+            if threads == 0:
+                told(f"sweep: {scheduler} has no workers yet; waiting for one (dask worker {scheduler})")
+            batches.give(tasks, batch_size(len(tasks), threads))
             yield from batches.results()
         except CancelledError:
             raise SimConsoleError(f"sweep: --scheduler: value {scheduler}: it has ended") from None
@@ -77,7 +87,7 @@ class _Batches:
         for start in range(0, len(tasks), size):
             batch = tasks[start : start + size]
             future = self._client.submit(
-                drive_lines, list(map(to_bytes, batch)), __version__, pure=False, retries=_TRIES
+                drive_lines, list(map(to_bytes, batch)), __version__, self._client.id, pure=False, retries=_TRIES
             )
             self._waiting[future] = batch
             self._completed.add(future)  # type: ignore[no-untyped-call]
@@ -95,7 +105,8 @@ class _Batches:
         """Take back what is not driven, and end the processes that drive."""
         if self._client.status == "running":
             self._client.cancel(list(self._waiting))
-            self._client.run(close_pool, on_error="ignore")
+            others = set(self._client.run_on_scheduler(clients_of)) - {self._client.id}
+            self._client.run(close_pools, others, on_error="ignore")
 
 
 def _results(future: Any, batch: Sequence[Task]) -> list[TaskResult]:
@@ -133,7 +144,13 @@ async def _reach(scheduler: str) -> None:
     await comm.close()
 
 
-_pool: WorkerPool | None = None
+def clients_of(dask_scheduler: Any) -> list[str]:
+    """Return the ids of all clients of this scheduler; Dask tells which it is."""
+    return list(dask_scheduler.clients)
+
+
+_pools: Final[dict[str, WorkerPool]] = {}
+"""Of Dask's worker, for all its threads: one for each sweep, by the id of its client."""
 _lock: Final = threading.Lock()
 
 
@@ -143,20 +160,17 @@ def check_version(version: str) -> None:
         raise ImportError(f"simconsole {__version__}, this machine {version}")
 
 
-def drive_lines(lines: Sequence[bytes], version: str) -> list[bytes]:
-    """Drive tasks, each a line of JSON, one after the other, and return the results likewise: for Dask.
+def drive_lines(lines: Sequence[bytes], version: str, sweep: str) -> list[bytes]:
+    """Drive tasks of a sweep, each a line of JSON, one after the other, and return the results likewise: for Dask.
 
     None is begun after `_BATCH_S`: there may be fewer results than tasks, but one at least.
 
     Raises:
         ImportError: the tasks are of another version.
     """
-    global _pool  # of Dask's worker, for all its threads
     check_version(version)
     with _lock:
-        if _pool is None:
-            _pool = WorkerPool()
-        pool = _pool
+        pool = _pools.setdefault(sweep, WorkerPool())
     results: list[bytes] = []
     until_s = time.monotonic() + _BATCH_S
     for line in lines:
@@ -166,10 +180,9 @@ def drive_lines(lines: Sequence[bytes], version: str) -> list[bytes]:
     return results
 
 
-def close_pool() -> None:
-    """End the processes that `drive_lines` has started."""
-    global _pool
+def close_pools(others: Collection[str]) -> None:
+    """End the processes that `drive_lines` has started, but those of other sweeps, which still have their client."""
     with _lock:
-        pool, _pool = _pool, None
-    if pool is not None:
+        ended = [_pools.pop(sweep) for sweep in list(_pools) if sweep not in others]
+    for pool in ended:
         pool.close()
