@@ -16,12 +16,14 @@ from simconsole.profiles.parts.script import ScriptProfile
 from simconsole.profiles.scenario import ScenarioProfile
 from simconsole.profiles.session import PlatformSection, SessionProfile, Start
 from simconsole.profiles.validation import PROFILE_FILES, convert
+from simconsole.profiles.vehicle import CarProfile, VehicleProfile
 from simconsole.profiles.view import HudProfile, LanguageProfile
 from simconsole.profiles.world import ArenaProfile, WorldProfile
 from simconsole.tick.assembly import ResolvedSession
 from simconsole.values.errors import ProfileError
 from simconsole.values.units import DEG_PER_RAD
 from simconsole.world.kinds.worlds import open_world
+from simconsole.world.roads.road_world import roads_of
 
 _NAMED: Final = (
     ("environment", "world"),
@@ -32,6 +34,8 @@ _NAMED: Final = (
 """Keys of a session that name another profile."""
 _PROFILES: Final = ("vehicle", "cockpit", "world")
 _SECTIONS: Final = SessionProfile.__struct_fields__
+_CLEAR_M: Final = 1.0
+"""So far beyond the beginning of a road a vehicle's rear stands: people walk across there."""
 
 T = TypeVar("T")
 
@@ -44,10 +48,11 @@ def resolve(session: SessionProfile, cockpit: str | None = None, language: str |
     """
     world = None if session.environment.world is None else load_world(session.environment.world)
     named = [platform.vehicle or session.scenario.vehicle for platform in session.scenario.platforms]
+    vehicle = load_vehicle(session.scenario.vehicle)
     return ResolvedSession(
-        session=session if world is None else _started(session, world),
+        session=session if world is None else _started(session, world, vehicle),
         cockpit=load("devices", cockpit or session.devices.cockpit, CockpitProfile),
-        vehicle=load_vehicle(session.scenario.vehicle),
+        vehicle=vehicle,
         world=world,
         language=language_of(language or (session.outputs.hud or HudProfile()).language),
         fleet=tuple(load_vehicle(name) for name in named),
@@ -65,17 +70,21 @@ def language_of(name_or_path: str) -> LanguageProfile:
     return language
 
 
-def _started(session: SessionProfile, world: WorldProfile) -> SessionProfile:
+def _started(session: SessionProfile, world: WorldProfile, vehicle: VehicleProfile) -> SessionProfile:
     """Return `session` with where it starts: the arena's first start, or the beginning of the route.
 
-    One that says where it starts is returned as it is.
+    On a road map the whole car stands on its road, clear of the junction behind it. A session that says where it starts
+    is returned as it is.
     """
     if session.scenario.start is not None:
         return session
     if isinstance(world, ArenaProfile):
         spot = world.starts[0]
         return with_start(session, Start(x_m=spot.x_m, y_m=spot.y_m, yaw_deg=spot.yaw_deg))
-    first = open_world(world).route.at(0.0)
+    opened, first_m = open_world(world), 0.0
+    if roads_of(opened) is not None and isinstance(vehicle, CarProfile):
+        first_m = vehicle.body.rear_overhang_m + _CLEAR_M
+    first = opened.route.at(first_m)
     yaw_deg = math.remainder(first.yaw_rad, math.tau) * DEG_PER_RAD
     start = Start(x_m=first.x_m, y_m=first.y_m, yaw_deg=min(max(yaw_deg, -180.0), 180.0))
     return with_start(session, start)

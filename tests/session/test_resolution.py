@@ -16,6 +16,7 @@ from simconsole.session.resolution import (
     with_named_values,
 )
 from simconsole.values.errors import ProfileError
+from simconsole.world.kinds.worlds import open_world
 
 
 def write(path: Path, text: str) -> str:
@@ -40,6 +41,19 @@ def test_every_shipped_scenario_loads_with_its_file(name: str) -> None:
 def test_a_session_has_the_papers_six_sections() -> None:
     sections = [field for field in SessionProfile.__struct_fields__ if field not in ("schema", "title")]
     assert sections == ["environment", "scenario", "features", "outputs", "devices", "mode"]
+
+
+def test_a_car_on_a_road_map_starts_with_its_rear_beyond_the_beginning_of_its_road() -> None:
+    for name in ("urban_signals", "urban"):
+        session = override(load_session("demo"), environment={"world": name})
+        resolved = resolve(session)
+        start, car = resolved.session.scenario.start, resolved.vehicle
+        assert resolved.world is not None
+        assert start is not None
+        assert isinstance(car, CarProfile)
+        route = open_world(resolved.world).route
+        rear_m = route.project(start.x_m, start.y_m).s_m - car.body.rear_overhang_m
+        assert rear_m == pytest.approx(1.0 if name == "urban_signals" else -car.body.rear_overhang_m, abs=1e-3)
 
 
 def test_override_replaces_single_keys_and_leaves_the_rest() -> None:

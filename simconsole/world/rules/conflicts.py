@@ -18,6 +18,9 @@ ZONE_M: Final = 2.6
 MERGED_M: Final = 6.0
 """Who is further than this on a common way is a vehicle ahead."""
 _STEP_M: Final = 1.0
+_INSIDE_M: Final = 2.0
+"""A place to wait inside a junction is further behind the junction's line than this."""
+_ONCOMING: Final = -0.7  # cosine of the angle between two lanes that lead to a junction from opposite sides
 
 LEFT_FROM_MAJOR_S: Final = 4.1
 CRITICAL_S: Final = {"r": 6.2, "s": 6.5, "l": 7.1}
@@ -52,15 +55,20 @@ class Watched(NamedTuple):
     signal: Array  # that holds them back before it, -1: none
     link: Array
     ring: Array  # 1: on a roundabout before the meeting: who indicates to the right leaves it there
+    line_m: Array  # way from the signal's line to where they meet the route
 
 
 class Entry(NamedTuple):
-    """A junction on the route at which somebody may have to be let pass."""
+    """A junction on the route at which somebody may have to be let pass.
+
+    Who turns to the left may wait inside it, too, before the ways of oncoming vehicles (StVO, section 9, paragraph 4).
+    """
 
     line_m: float  # along the route
     connection: Connection
     critical_s: float
     watched: Watched
+    inside: bool = False  # where who has passed the junction's line waits
 
 
 class Duties(NamedTuple):
@@ -85,7 +93,12 @@ def duties(road_map: RoadMap, legs: Sequence[Leg], route: Route) -> Duties:
         watched = ways.watched(one)
         if watched is not None:
             x, y = road_map.lanes[one.from_lane].line[-1, :2].tolist()
-            entries.append(Entry(route.project(x, y).s_m, one, ways.critical_s(one), watched))
+            entry = Entry(route.project(x, y).s_m, one, ways.critical_s(one), watched)
+            entries.append(entry)
+            waiting = ways.oncoming(one) if entry.critical_s == LEFT_FROM_MAJOR_S else None
+            if waiting is not None:
+                (x, y), watched = waiting
+                entries.append(entry._replace(line_m=route.project(x, y).s_m, watched=watched, inside=True))
     return Duties(tuple(sorted(feet, key=lambda foot: foot.line_m)), tuple(entries))
 
 
@@ -133,10 +146,7 @@ class _Ways:
 
     def watched(self, own: Connection) -> Watched | None:
         """Return the ways that meet a movement; None where none does."""
-        line = _points(np.vstack([self._map.lanes[lane].line[:, :2] for lane in (*own.via, own.to_lane)]))
-        inside = float(sum(self._map.lanes[lane].length_m for lane in own.via))
-        line = line[: max(2, round((inside + MERGED_M) / _STEP_M))]
-        firsts = self._users(own.yields_to)
+        line, firsts = self._driven(own), self._users(own.yields_to)
         others = {id(one): one for lane in own.foes for one in self._by_lane.get(lane, ())}
         parts = [
             part
@@ -145,38 +155,72 @@ class _Ways:
         ]
         return Watched(*np.concatenate(parts, axis=1)) if parts else None
 
+    def oncoming(self, own: Connection) -> tuple[tuple[float, float], Watched] | None:
+        """Return where a movement meets the first way of oncoming vehicles that go first, and their ways; None: none.
+
+        Who waits there is in nobody's way: others wait for them, or are stopped by lights.
+        """
+        line, looks = self._driven(own), self._looks(own)
+        met, parts = [], []
+        for one in self._users(own.yields_to).values():
+            if float(looks @ self._looks(one)) > _ONCOMING:
+                continue
+            part, apart_m = self._part(one, line, True), _apart(line, self._crossed(one))
+            if part is not None:
+                met.append(int(np.flatnonzero(apart_m < ZONE_M)[0]))
+                parts.append(part)
+        if not parts or min(met) * _STEP_M < _INSIDE_M:
+            return None
+        x, y = line[min(met)].tolist()
+        return (x, y), Watched(*np.concatenate(parts, axis=1))
+
+    def _looks(self, one: Connection) -> Array:
+        """Return the direction in which a movement's lane comes to the junction, float64 [2]."""
+        ends = self._map.lanes[one.from_lane].line[-2:, :2]
+        return np.asarray((ends[1] - ends[0]) / np.hypot(*(ends[1] - ends[0])))
+
+    def _driven(self, own: Connection) -> Array:
+        """Return the points of a movement on the route, until others on it are vehicles ahead."""
+        line = _points(np.vstack([self._map.lanes[lane].line[:, :2] for lane in (*own.via, own.to_lane)]))
+        inside = float(sum(self._map.lanes[lane].length_m for lane in own.via))
+        return line[: max(2, round((inside + MERGED_M) / _STEP_M))]
+
     def _users(self, lanes: Sequence[int]) -> Mapping[int, Connection]:
         return {id(one): one for lane in lanes for one in self._by_lane.get(lane, ())}
 
     def _part(self, other: Connection, own: Array, goes_first: bool) -> Array | None:
         """Return the points of another movement, float64 [fields of Watched, points]."""
-        lanes = self._map.lanes
-        ahead = _points(np.vstack([lanes[lane].line[:, :2] for lane in (*other.via, other.to_lane)]))
-        within = float(sum(lanes[lane].length_m for lane in other.via)) + MERGED_M
-        ahead = ahead[: max(2, round(within / _STEP_M))]
-        apart = np.hypot(ahead[:, None, 0] - own[None, :, 0], ahead[:, None, 1] - own[None, :, 1]).min(axis=1)
+        ahead = self._crossed(other)
+        apart = _apart(ahead, own)
         met = np.flatnonzero(apart < ZONE_M)
         if not len(met):
             return None
         begins, ends = float(met[0]) * _STEP_M, float(met[-1] + 1) * _STEP_M
-        found = [_rows(ahead, begins, ends - begins, (goes_first, 1.0, -1.0, -1.0, 0.0))]
+        found = [_rows(ahead, begins, ends - begins, (goes_first, 1.0, -1.0, -1.0, 0.0, begins))]
         if goes_first:
             held = (1.0, 0.0, float(other.signal), float(other.link))
             found += self._behind(other.from_lane, begins, ends - begins, held)
         return np.concatenate(found, axis=1)
 
+    def _crossed(self, other: Connection) -> Array:
+        """Return the points of another movement from its line on, until who is on it is a vehicle ahead."""
+        lanes = self._map.lanes
+        ahead = _points(np.vstack([lanes[lane].line[:, :2] for lane in (*other.via, other.to_lane)]))
+        within = float(sum(lanes[lane].length_m for lane in other.via)) + MERGED_M
+        return ahead[: max(2, round(within / _STEP_M))]
+
     def _behind(self, lane: int, to_m: float, zone_m: float, held: tuple[float, ...]) -> list[Array]:
         """Return the points of a lane that ends `to_m` before the meeting, and of those that lead there."""
-        found, todo, seen, lanes = [], [(lane, to_m)], {lane}, self._map.lanes
+        found, todo, seen, lanes, line_m = [], [(lane, to_m)], {lane}, self._map.lanes, to_m
         while todo:
             lane, end_m = todo.pop()
             points = _points(self._map.lanes[lane].line[:, :2])
             length = self._map.lanes[lane].length_m
-            on_ring = (float(lanes[lane].edge in self._rings),)
+            on_ring = (float(lanes[lane].edge in self._rings), line_m)
             found.append(_rows(points, end_m + length, zone_m, held + on_ring))
             if end_m + length < SEEN_M:
                 for one in self._to[lane]:
-                    chain, on_ring = end_m + length, (float(lanes[one.from_lane].edge in self._rings),)
+                    chain, on_ring = end_m + length, (float(lanes[one.from_lane].edge in self._rings), line_m)
                     for via in reversed(one.via):
                         inside = _points(self._map.lanes[via].line[:, :2])
                         way = self._map.lanes[via].length_m
@@ -195,11 +239,14 @@ def _rows(points: Array, begins_m: float, zone_m: float, held: tuple[float, ...]
     direction[-1] = direction[-2]
     length = np.maximum(np.hypot(*direction.T), 1e-9)
     count = len(points)
-    first, inside, signal, link, ring = (np.full(count, float(value)) for value in held)
-    table = np.stack(
-        (points[:, 0], points[:, 1], *(direction.T / length), to_m, to_m + zone_m, first, inside, signal, link, ring)
-    )
+    told = [np.full(count, float(value)) for value in held]
+    table = np.stack((points[:, 0], points[:, 1], *(direction.T / length), to_m, to_m + zone_m, *told))
     return table[:, (to_m < SEEN_M) & (to_m + zone_m > -MERGED_M)]
+
+
+def _apart(points: Array, others: Array) -> Array:
+    """Return how far each point is from the nearest of the others, float64 [points]."""
+    return np.asarray(np.hypot(*(points[:, None, axis] - others[None, :, axis] for axis in (0, 1))).min(axis=1))
 
 
 def _points(line: Array) -> Array:

@@ -5,6 +5,9 @@ steps onto it, is let pass until they are beyond the vehicle's lane. A vehicle w
 comes within the critical headway (`conflicts.CRITICAL_S`), unless it is on a roundabout and indicates that it leaves
 it; who is inside the junction is let out. Vehicles that have stood for a while before their line let others go, and at
 a traffic light those, too, that have stood inside the junction and indicate to the left: they wait for who comes.
+
+Who turns to the left and has passed the junction's line still lets oncoming vehicles pass, and waits inside for that,
+before their ways; until they have to stop for their own light, whatever the own one shows by then.
 """
 
 from bisect import bisect_left
@@ -41,12 +44,8 @@ _ALIGNED: Final = 0.6
 _SETS_OFF_MPS: Final = 2.5  # who is slower than this may speed up
 _INSIDE_S: Final = 3.0  # who is inside the junction and reaches the common place later than this is passed
 _SLOWEST_MPS: Final = 3.0
-_STOPS: Final = (
-    SignalState.STOP_AND_REMAIN,
-    SignalState.PRE_MOVEMENT,
-    SignalState.PERMISSIVE_CLEARANCE,
-    SignalState.PROTECTED_CLEARANCE,
-)
+_AMBER: Final = (SignalState.PERMISSIVE_CLEARANCE, SignalState.PROTECTED_CLEARANCE)
+_STOPS: Final = (SignalState.STOP_AND_REMAIN, SignalState.PRE_MOVEMENT, *_AMBER)
 
 
 class Owed(NamedTuple):
@@ -75,6 +74,7 @@ class RightOfWay:
         lines = [(foot.line_m, foot) for foot in duties.crossings] + [(one.line_m, one) for one in duties.entries]
         self._lines: list[tuple[float, Foot | Entry]] = sorted(lines, key=lambda line: line[0])
         self._at = [line for line, _ in self._lines]
+        self._inside = {id(one.connection) for one in duties.entries if one.inside}
         self._stood: dict[float, float] = {}
         self._seen: dict[int, float] = {}  # when each duty was seen last
         self._hindered: dict[int, float] = {}
@@ -92,7 +92,7 @@ class RightOfWay:
         for line in near:
             place, duty = self._lines[line]
             left_m = place - own.front_m
-            if left_m < 0.0 and line not in self._seen:
+            if left_m < 0.0 and (line not in self._seen or self._waits_inside(duty)):
                 continue
             found = _who_goes_first(duty, left_m, own.speed_mps, users, standing, light)
             if found is not None:
@@ -102,6 +102,10 @@ class RightOfWay:
             if line in self._seen and (line not in self._excused or isinstance(duty, Foot)):
                 return Owed(left_m, FAR if line in self._excused else self._hindered[line])
         return NOTHING_OWED
+
+    def _waits_inside(self, duty: Foot | Entry) -> bool:
+        """Return whether who has passed this line may still wait for the same vehicles, inside the junction."""
+        return isinstance(duty, Entry) and not duty.inside and id(duty.connection) in self._inside
 
     def _take(self, line: int, left_m: float, own: Motion, hindered_s: float) -> None:
         needed_m = own.speed_mps * (_EXCUSED_S + own.speed_mps / (2.0 * EXCUSED_MPS2))
@@ -151,7 +155,7 @@ def _vehicle_first(
 ) -> float | None:
     connection = entry.connection
     own_light = SignalState.UNAVAILABLE if connection.signal < 0 else light(connection.signal, connection.link)
-    if own_light in _STOPS:
+    if own_light in _STOPS and not entry.inside:
         return None
     protected = own_light == SignalState.PROTECTED_MOVEMENT_ALLOWED
     reaches_s = max(left_m, 0.0) / max(speed_mps, _SLOWEST_MPS)
@@ -167,7 +171,7 @@ def _vehicle_first(
         if inside:
             held = connection.signal >= 0 and standing[user] and vehicles[user, 10] > 0.0 and left > 0.0
         else:
-            held = standing[user] or _is_held(way, place, light)
+            held = standing[user] or _is_held(way, place, left, speed, light)
         if held or user in leaving or not (goes_first or inside):
             continue
         comes_s = max(left, 0.0) / max(speed, _SETS_OFF_MPS)
@@ -193,6 +197,10 @@ def _on_ways(watched: Watched, vehicles: Array) -> list[list[int]]:
     return np.argwhere(on).tolist()
 
 
-def _is_held(way: Watched, place: int, light: LightOf) -> bool:
+def _is_held(way: Watched, place: int, left_m: float, speed_mps: float, light: LightOf) -> bool:
+    """Return whether a light stops who is `left_m` before the meeting; at amber not who is too near to its line."""
     signal = int(way.signal[place])
-    return signal >= 0 and light(signal, int(way.link[place])) in _STOPS
+    state = light(signal, int(way.link[place])) if signal >= 0 else SignalState.UNAVAILABLE
+    if state in _AMBER:
+        return speed_mps * speed_mps <= 2.0 * EXCUSED_MPS2 * max(left_m - float(way.line_m[place]), 0.0)
+    return state in _STOPS

@@ -37,7 +37,7 @@ PLACE: Final = slice(2, 5)
 """Columns of where somebody is and looks."""
 MOTION: Final = slice(2, 6)
 """And how fast they are."""
-_LENGTH: Final = 6
+LENGTH: Final = 6
 _INDICATORS: Final = 10
 _ORDER: Final = [0, 1, 5, 6, 8, 9, 2, 3, 4, 7, 10]
 """Where the columns are in what a `VehicleReader` collects: number, kind, size, place, angle, speed, lamps."""
@@ -133,7 +133,7 @@ def people_rows(people: Found, numbers: Numbers) -> Array:
 def road_users(vehicles: Array, people: Array, moved_m: Moved, ego: tuple[float, float], room: int = CAPACITY) -> Array:
     """Return rows as road users, float64 [users, FIELDS]; of more than `room` those nearest to `ego` (SUMO's m)."""
     table = np.concatenate((vehicles, people))
-    from_bumper_m = np.concatenate((vehicles[:, _LENGTH], np.zeros(len(people))))
+    from_bumper_m = np.concatenate((vehicles[:, LENGTH], np.zeros(len(people))))
     if len(table) > room:
         away = np.hypot(table[:, 2] - ego[0], table[:, 3] - ego[1])
         nearest = np.sort(np.argsort(away, kind="stable")[:room])

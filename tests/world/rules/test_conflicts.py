@@ -5,7 +5,7 @@ import pytest
 
 from simconsole.profiles.files.world_files import load_world
 from simconsole.world.kinds.worlds import open_world
-from simconsole.world.roads.lane_graph import LaneGraph
+from simconsole.world.roads.lane_graph import LaneGraph, Leg
 from simconsole.world.roads.road_route import route_over
 from simconsole.world.roads.road_world import Roads, roads_of
 from simconsole.world.route import Route
@@ -44,6 +44,27 @@ def test_green_light_makes_others_wait_but_for_who_is_inside() -> None:
     lights = next(one for one in found.entries if one.connection.signal >= 0)
     assert lights.critical_s == LEFT_FROM_MAJOR_S
     assert (lights.watched.inside > 0.0).any()
+
+
+def test_who_turns_left_at_lights_may_wait_inside_before_the_ways_of_oncoming_vehicles() -> None:
+    roads, _ = urban()
+    road_map = roads.road_map
+    for one in road_map.connections:
+        if one.signal < 0 or not (road_map.lanes[one.from_lane].drivable and road_map.lanes[one.to_lane].drivable):
+            continue
+        legs = [Leg((one.from_lane,), one), Leg((one.to_lane,), None)]
+        entries = duties(road_map, legs, route_over(road_map, legs)).entries
+        within = [entry for entry in entries if entry.inside]
+        assert len(within) == (1 if one.direction == "l" else 0), one
+        for entry in within:
+            at_line = next(other for other in entries if not other.inside)
+            assert 3.0 < entry.line_m - at_line.line_m < sum(road_map.lanes[lane].length_m for lane in one.via)
+            assert entry.watched.first.all()
+            own = road_map.lanes[one.from_lane].line[-1, :2] - road_map.lanes[one.from_lane].line[-2, :2]
+            far = entry.watched.to_m > 40.0
+            towards = entry.watched.cosine[far] * own[0] + entry.watched.sine[far] * own[1]
+            assert far.any()
+            assert (towards < 0.0).all(), "they come from the other side"
 
 
 def test_critical_headways_of_minor_roads_are_longest_to_the_left() -> None:

@@ -8,7 +8,9 @@ import pytest
 from simconsole.profiles.files.world_files import load_world
 from simconsole.values.signals import FAR, SignalState
 from simconsole.world.kinds.worlds import open_world
+from simconsole.world.roads.lane_graph import Leg
 from simconsole.world.roads.road_map import Array
+from simconsole.world.roads.road_route import route_over
 from simconsole.world.roads.road_world import roads_of
 from simconsole.world.rules.conflicts import Duties, Entry, Foot, duties
 from simconsole.world.rules.right_of_way import NOTHING_OWED, Motion, RightOfWay
@@ -157,6 +159,53 @@ def test_who_stands_inside_a_junction_with_lights_to_turn_left_waits_for_oncomin
     assert owed_after(1.0, 1.0), "it may be about to go"
     assert owed_after(3.0, 0.0), "it goes straight on, and is let out"
     assert not owed_after(3.0, 1.0)
+
+
+def left_at_lights() -> tuple[Duties, Entry, Entry]:
+    """The duties of a left turn at lights: at the junction's line, and inside it."""
+    roads = roads_of(open_world(load_world("urban_signals")))
+    assert roads is not None
+    turn = next(one for one in roads.road_map.connections if one.signal >= 0 and one.direction == "l")
+    legs = [Leg((turn.from_lane,), turn), Leg((turn.to_lane,), None)]
+    found = duties(roads.road_map, legs, route_over(roads.road_map, legs))
+    at_line, inside = found.entries
+    return found, at_line, inside
+
+
+def oncoming(inside: Entry, to_m: float, speed_mps: float) -> Array:
+    """A car that comes from the other side of the junction."""
+    way, car = inside.watched, on_ring(ring(), 20.0, speed_mps)
+    place = int(np.argmin(np.abs(way.to_m - to_m)))
+    car[0, 2:5] = way.x_m[place], way.y_m[place], math.atan2(float(way.sine[place]), float(way.cosine[place]))
+    return car
+
+
+def test_who_has_passed_the_line_to_turn_left_waits_inside_for_who_comes_then() -> None:
+    found, at_line, inside = left_at_lights()
+    car = oncoming(inside, 55.0, 14.0)
+    right_of_way = RightOfWay(found)
+    beyond = before(at_line.line_m, -0.5, 2.0)
+    assert right_of_way.owed(before(at_line.line_m, 0.3, 1.5), NOBODY, dark) == NOTHING_OWED
+    owed = right_of_way.owed(beyond, car, dark)
+    assert owed.yield_m == pytest.approx(inside.line_m - beyond.front_m)
+    late = RightOfWay(found)
+    late.owed(before(at_line.line_m, 0.3, 1.5), car, dark)  # too late to stop before the line
+    assert late.owed(beyond, car, dark).yield_m == pytest.approx(inside.line_m - beyond.front_m)
+    assert RightOfWay(found).owed(before(inside.line_m, 0.5, 2.0), NOBODY, dark) == NOTHING_OWED
+
+
+def test_who_waits_inside_goes_when_oncoming_vehicles_have_to_stop() -> None:
+    found, _, inside = left_at_lights()
+    waits = before(inside.line_m, 1.0, 0.0)
+
+    def owes(state: SignalState, to_m: float, speed_mps: float) -> bool:
+        owed = RightOfWay(found).owed(waits, oncoming(inside, to_m, speed_mps), lambda signal, link: state)
+        return owed.yield_m < FAR
+
+    assert owes(SignalState.PERMISSIVE_MOVEMENT_ALLOWED, 45.0, 12.0)
+    assert not owes(SignalState.STOP_AND_REMAIN, 45.0, 12.0)
+    assert not owes(SignalState.PERMISSIVE_CLEARANCE, 45.0, 12.0), "it can stop"
+    assert owes(SignalState.PERMISSIVE_CLEARANCE, 25.0, 12.0), "it cannot, and goes on"
 
 
 def test_duty_lasts_a_moment_after_it_was_seen() -> None:

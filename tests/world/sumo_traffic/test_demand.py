@@ -46,6 +46,18 @@ def test_who_comes_later_comes_where_no_road_leads_to() -> None:
     assert not list(root.iter("person")), "no pavements"
 
 
+def test_nobody_gets_to_the_end_of_a_way_that_ends_in_the_middle_of_the_map() -> None:
+    road_map, horizon_s = generated_map(*TOWN), 110.0
+    root = ElementTree.fromstring(demand(road_map, vehicles=40, pedestrians=0, seed=3, horizon_s=horizon_s))
+    lane_of = {edge.id: next(road_map.lanes[at] for at in edge.lanes if road_map.lanes[at].drivable)
+               for edge in road_map.edges if edge.function == ROAD}  # fmt: skip
+    goes_on = {road_map.edges[road_map.lanes[one.from_lane].edge].id for one in road_map.connections}
+    for vehicle in root.iter("vehicle"):
+        way = str(vehicle[0].get("edges")).split()
+        fastest_s = sum(lane_of[edge].length_m / (1.3 * lane_of[edge].limit_mps) for edge in way)
+        assert way[-1] not in goes_on or float(str(vehicle.get("depart"))) + fastest_s >= horizon_s
+
+
 def test_people_walk_between_pavements() -> None:
     road_map = generated_map(*CITY)
     root = ElementTree.fromstring(demand(road_map, vehicles=0, pedestrians=4, seed=1, horizon_s=300.0))

@@ -17,17 +17,18 @@ from tests.world.nets import generated, generated_map
 from tests.world.sumo_traffic.on_sumo import box
 
 STEP_S = 0.04
+LONG_M = 4.6
 TWO_LANES = (
     "--grid", "--grid.number", "4", "--grid.length", "120", "--default.lanenumber", "2",
     "--default-junction-type", "traffic_light",
 )  # fmt: skip
 
 
-def told_of(rows: Array) -> Array:
+def told_of(rows: Array, length_m: float = LONG_M) -> Array:
     """What is told of one vehicle that SUMO has at these places (x, y, angle, speed), float64 [steps, 3]."""
     told = [rows[0, :3]]
     for was, now in pairwise(rows):
-        told.append(followed(was[None], told[-1][None], now[None], STEP_S)[0])
+        told.append(followed(was[None], told[-1][None], now[None], np.array((length_m,)), STEP_S)[0])
     return np.array(told)
 
 
@@ -70,6 +71,17 @@ def test_a_corner_is_turned_and_a_vehicle_that_is_put_elsewhere_is_there() -> No
     assert np.array_equal(told[40:], rows[40:, :3])
 
 
+@pytest.mark.parametrize("length_m", [LONG_M, 5.4, 12.0])
+@pytest.mark.parametrize("radius_m", [12.0, -12.0])
+def test_who_drives_fast_round_a_bend_is_told_exactly(length_m: float, radius_m: float) -> None:
+    """Both ends are on the lane, as SUMO has them: the front moves aside from where the vehicle looks."""
+    at_rad = 14.0 * STEP_S / radius_m * np.arange(60)
+    looks_rad = at_rad - math.asin(0.5 * length_m / radius_m)
+    x, y = radius_m * np.sin(at_rad), radius_m * (1.0 - np.cos(at_rad))
+    rows = np.column_stack((x, y, (90.0 - np.degrees(looks_rad)) % 360.0, np.full(60, 14.0)))
+    assert np.array_equal(told_of(rows, length_m), rows[:, :3])
+
+
 def test_who_does_not_leap_is_told_exactly(sample: Sample) -> None:
     rng = np.random.default_rng(sample.seed)
     for _ in range(sample.of(20, 300)):
@@ -85,8 +97,8 @@ def test_who_does_not_leap_is_told_exactly(sample: Sample) -> None:
 def test_no_vehicle_of_a_city_with_two_lanes_leaps_though_sumos_do(monkeypatch: pytest.MonkeyPatch) -> None:
     beside = list[float]()
 
-    def watched(was: Array, told: Array, now: Array, period_s: float) -> Array:
-        found = followed(was, told, now, period_s)
+    def watched(was: Array, told: Array, now: Array, lengths_m: Array, period_s: float) -> Array:
+        found = followed(was, told, now, lengths_m, period_s)
         beside.extend(np.hypot(*(found[:, :2] - now[:, :2]).T).tolist())
         return found
 
