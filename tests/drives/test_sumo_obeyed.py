@@ -47,6 +47,7 @@ def judge(folder: Path) -> int:
     """Judge a drive, and return in how many ticks somebody had to be let pass."""
     bundle = open_bundle(folder)
     table = bundle.log.table()
+    assert bundle.manifest.summary["unanswered"] == 0
     assert not table.column("rules.red_light").any()
     assert not table.column("rules.collision").any()
     assert not table.column("rules.failing_to_yield").any()

@@ -25,7 +25,7 @@ PART_S, WHOLE_S = 110, 420
 PART_M, WHOLE_M = 250.0, 2500.0
 """So far everybody gets at least, whatever the lights show and who crosses."""
 BY_ROS = (
-    "features: {autopilot: world.yaml}\nmode: {pacing: lockstep}\n"
+    "features: {autopilot: world.yaml}\nmode: {pacing: lockstep, answer_timeout_s: 60}\n"
     "devices: {driver: virtual, person: {sit_s: 0.5, cruise_kmh: 15, top_gear: 2, autonomy: {distance_m: 5}}}\n"
 )
 BY_HAND = "devices: {driver: virtual, person: {sit_s: 0.5, along: route, seed: SEED}}\nmode: {pacing: free}\n"

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple, Protocol
 
 from simconsole.bridge.client.bridge_client import BridgeClient
 from simconsole.bridge.protocol.backoff import DEAD_AFTER_S
+from simconsole.bridge.protocol.client_protocol import Received
 from simconsole.drivers.robots.fleet.team import Team
 from simconsole.drivers.robots.nodes.navigation_node import NavigationNode
 from simconsole.drivers.robots.nodes.shared_client import NodePort, SharedClient
@@ -37,6 +38,9 @@ class Answering(Protocol):
     """What drives one robot, as `NavigationNode`."""
 
     answered_ns: int
+
+    def is_asked(self, received: Received) -> bool:
+        """Return whether this is odometry that the robot is to answer."""
 
     def take(self, topic: str, message: Any) -> None:
         """Take a message; answer odometry."""
@@ -118,7 +122,7 @@ def drive(
         done_ns = max(node.answered_ns for _, node in drivers)
         while not stop() and any(node.answered_ns < done_ns for _, node in drivers):
             _take(shared, drivers)
-        while not stop() and not any(port.waiting for port, _ in drivers):
+        while not stop() and not any(node.is_asked(one) for port, node in drivers for one in port.waiting):
             shared.pump(WAIT_S)
     return "mission done"
 

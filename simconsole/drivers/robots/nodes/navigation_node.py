@@ -147,9 +147,9 @@ class NavigationNode:
         # Last: a console in lockstep begins when somebody listens to this.
         client.subscribe(topics.odometry, "nav_msgs/Odometry", reads=Odometry)
 
-    def is_asked(self, received: Received | None) -> bool:
-        """Return whether this is the odometry that the robot is to answer."""
-        return received is not None and received.topic == self._topics.odometry
+    def is_asked(self, received: Received) -> bool:
+        """Return whether this is odometry that the robot is to answer."""
+        return received.topic == self._topics.odometry
 
     def take(self, topic: str, message: Any) -> None:
         """Take a message; each odometry is answered by one command."""
@@ -292,8 +292,11 @@ def run(
                     node.take(*received)
             if mission is not None and mission.is_done:
                 ended = "mission done"
-                while lockstep and not stop() and not node.is_asked(client.receive(WAIT_S)):
-                    pass  # so that a server that waits sees in the very tick that is asked of that its client is gone
+                # Leave what is asked next unanswered, as a team does (`fleet_program.drive`).
+                asked = not lockstep
+                while not stop() and not asked:
+                    received = client.receive(WAIT_S)
+                    asked = received is not None and node.is_asked(received)
         except BridgeError as error:
             ended = str(error)
     found = ([], 0.0, None) if mission is None else (mission.visits, mission.planned_m, mission.explored_s)
