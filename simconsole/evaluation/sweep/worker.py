@@ -9,16 +9,19 @@ import os
 import socket
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import NoReturn
+from typing import Final, NoReturn
 
 import msgspec
 
 from simconsole.evaluation.sweep.driving import drive_task
 from simconsole.evaluation.sweep.task import FORK, RECEIVED, from_bytes
 from simconsole.processes.lifetimes import SIGNALS, end_at_once, handle
+
+_MOMENT_S: Final = 0.0005
 
 
 def main() -> NoReturn:
@@ -51,6 +54,9 @@ def _ending_with_parent() -> Iterator[None]:
     watching.start()
     yield
     watching.join()
+    # Python lets go of a thread a moment before the system does, at whose threads `_fork` looks.
+    while Path(f"/proc/self/task/{watching.native_id}").exists():
+        time.sleep(_MOMENT_S)
 
 
 def _watch() -> None:
