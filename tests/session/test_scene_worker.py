@@ -48,7 +48,7 @@ def test_a_robot_turns_on_the_spot_and_has_its_lidar() -> None:
     columns = assemble(resolved, plain)[0].columns
     job = job_of(scene_source(resolved, columns, 200))
     assert job.scanner is not None
-    assert job.vehicle == (0.0, None)
+    assert job.vehicle == (0.0, None, True)
     assert scene_columns(resolved, columns) == columns
 
 
