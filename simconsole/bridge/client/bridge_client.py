@@ -83,8 +83,8 @@ class BridgeClient:
             on_state: called with each change of the connection's state.
             first_s: the first pause between two attempts.
             cap_s: the longest, without its scatter.
-            dead_after_s: how long the server may be silent before it counts as gone; infinite where whoever uses this
-                client learns of its end in another way.
+            dead_after_s: how long the server may be silent, and its system acknowledge nothing, before it counts as
+                gone; infinite where whoever uses this client learns of its end in another way.
             answers_together: what is published while messages that came together are returned goes together, with the
                 last of them or in the next `receive`: for who answers several topics of one sender.
 
@@ -321,7 +321,8 @@ class BridgeClient:
                 self._connection.send(self.protocol.replies.popleft())
             now_s = time.monotonic()
             self._liveness.heard(self._connection.heard_s)
-            if is_silent and self._liveness.is_dead(now_s):
+            # A server that waits for others, as in lockstep, is not a machine that is gone: that acknowledges nothing.
+            if is_silent and self._liveness.is_dead(now_s) and self._connection.is_unacknowledged:
                 raise BridgeError(f"{self.url}: the server has been silent for too long")
             if self._liveness.ping_due(now_s):
                 self._connection.ping()

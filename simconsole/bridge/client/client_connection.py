@@ -17,7 +17,7 @@ from websockets.uri import parse_uri
 from simconsole.bridge.protocol.frames import CLOSE, MessageAssembler
 from simconsole.bridge.protocol.handshake import DRIVE_HEADER
 from simconsole.bridge.protocol.message_decoding import Binary
-from simconsole.bridge.transport.sockets import RECEIVE_BYTES
+from simconsole.bridge.transport import sockets
 from simconsole.bridge.transport.whole_frames import masked_frame, take_whole
 from simconsole.values.errors import BridgeError, OtherDriveError
 
@@ -72,6 +72,11 @@ class ClientConnection:
     def is_open(self) -> bool:
         """Whether messages can pass, as far as this side knows."""
         return self._web is not None and self._web.state is State.OPEN
+
+    @property
+    def is_unacknowledged(self) -> bool:
+        """Whether not even the server's system answers, as `sockets.is_unacknowledged`; True when not connected."""
+        return self._socket is None or sockets.is_unacknowledged(self._socket)
 
     def open(self) -> None:
         """Connect.
@@ -158,7 +163,7 @@ class ClientConnection:
         web = self._web
         try:
             self._socket.settimeout(max(timeout_s, 1e-6))
-            data = self._socket.recv(RECEIVE_BYTES)
+            data = self._socket.recv(sockets.RECEIVE_BYTES)
         except TimeoutError:
             return None
         except OSError as error:
@@ -235,7 +240,7 @@ class ClientConnection:
         assert self._web is not None
         with suppress(OSError):
             self._socket.setblocking(False)
-            while data := self._socket.recv(RECEIVE_BYTES):
+            while data := self._socket.recv(sockets.RECEIVE_BYTES):
                 self._web.receive_data(data)
         if self._web.close_rcvd is not None:
             self.close_code = self._web.close_rcvd.code

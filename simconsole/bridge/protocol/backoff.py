@@ -77,6 +77,7 @@ class Liveness:
         return due
 
     def patience_s(self, now_s: float) -> float:
-        """Return how long until a ping is due or the connection counts as dead."""
+        """Return how long until a ping is due or the connection counts as dead, which it is not told twice."""
         ask_s = max(self._heard_s, self._pinged_s) + self._ping_after_s
-        return max(0.0, min(ask_s, self._heard_s + self._dead_after_s) - now_s)
+        dead_s = self._heard_s + self._dead_after_s
+        return max(0.0, (ask_s if self.is_dead(now_s) else min(ask_s, dead_s)) - now_s)

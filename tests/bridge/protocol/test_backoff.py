@@ -32,6 +32,8 @@ def test_silence_is_asked_about_each_second_and_ends_after_three() -> None:
     liveness.heard(5.0)
     assert not liveness.is_dead(15.0)
     assert liveness.patience_s(99.0) == 0.0
+    assert liveness.ping_due(99.0)
+    assert liveness.patience_s(99.25) == 0.75, "whoever waits on is not woken until the next ping"
 
 
 def test_silence_counts_only_while_somebody_listens() -> None:
