@@ -1,7 +1,8 @@
 """Whom a vehicle on a route has to let pass: people on crossings, and vehicles with the right of way at junctions.
 
 Seen from where others are and how they move; where they want to go only their indicators tell. Who is on a crossing, or
-steps onto it, is let pass until they are beyond the vehicle's lane. A vehicle with the right of way is let pass if it
+steps onto it, is let pass until they are beyond the vehicle's lane; who stands at its edge while its own light tells
+people to wait does so (SUMO's people wait there, ours further back). A vehicle with the right of way is let pass if it
 comes within the critical headway (`conflicts.CRITICAL_S`), unless it is on a roundabout and indicates that it leaves
 it; who is inside the junction is let out. Vehicles that have stood for a while before their line let others go, and at
 a traffic light those, too, that have stood inside the junction and indicate to the left: they wait for who comes.
@@ -38,6 +39,7 @@ _STOOD_S: Final = 2.0
 _STANDS_MPS: Final = 0.3
 _STEPS_MPS: Final = 0.3
 _AT_KERB_M: Final = 0.06  # nearer to the carriageway than who waits
+_EDGE_M: Final = 0.3  # less of a crossing nobody has walked who waits before it
 _CLEAR_M: Final = 0.5
 _BESIDE_M: Final = 1.5  # further from a lane's centre line nobody is on it
 _ALIGNED: Final = 0.6
@@ -130,11 +132,11 @@ def _who_goes_first(
     """Return in how many seconds who goes first is in the way, FAR: nobody is hindered; None: nobody goes first."""
     on_foot = users[:, 1] == RoadUserKind.PEDESTRIAN
     if isinstance(duty, Foot):
-        return 0.0 if len(users) and _somebody_crosses(duty, users[on_foot]) else None
+        return 0.0 if len(users) and _somebody_crosses(duty, users[on_foot], light) else None
     return _vehicle_first(duty, left_m, speed_mps, users[~on_foot], standing[~on_foot], light)
 
 
-def _somebody_crosses(foot: Foot, people: Array) -> bool:
+def _somebody_crosses(foot: Foot, people: Array, light: LightOf) -> bool:
     """Return whether somebody is on a crossing, or steps onto it, and has not passed the vehicle's lane."""
     (x, y), (to_x, to_y) = foot.crossing.line[[0, -1]].tolist()
     length = float(np.hypot(to_x - x, to_y - y))
@@ -146,6 +148,8 @@ def _somebody_crosses(foot: Foot, people: Array) -> bool:
     passed = np.where(forth > 0.0, foot.high_m, length - foot.low_m) + _CLEAR_M
     steps = (people[:, 5] > _STEPS_MPS) & (walked > _AT_KERB_M - KERB_M) & (np.abs(forth) > _ALIGNED)
     on = (walked > -0.25) & (walked < length)
+    if foot.crossing.signal >= 0 and light(foot.crossing.signal, foot.crossing.link) in _STOPS:
+        on &= (walked > _EDGE_M) | (people[:, 5] > _STEPS_MPS)
     there = (aside < 0.5 * foot.crossing.width_m + _CLEAR_M) & (walked < passed)
     return bool((there & (steps | on)).any())
 

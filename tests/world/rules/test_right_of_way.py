@@ -94,6 +94,30 @@ def test_who_is_on_the_crossing_is_let_pass_until_beyond_the_lane() -> None:
         assert owed == (pytest.approx((30.0, 0.0)) if owes else NOTHING_OWED), (along_m, forth)
 
 
+@pytest.mark.parametrize(
+    ("along_m", "speed_mps", "shown", "owes"),
+    [
+        (-0.1, 0.0, SignalState.STOP_AND_REMAIN, False),  # where SUMO's people wait
+        (-0.1, 0.0, SignalState.PERMISSIVE_CLEARANCE, False),
+        (-0.1, 0.0, SignalState.PROTECTED_MOVEMENT_ALLOWED, True),
+        (-0.1, 0.0, SignalState.UNAVAILABLE, True),
+        (-0.1, 1.3, SignalState.STOP_AND_REMAIN, True),
+        (1.0, 0.0, SignalState.STOP_AND_REMAIN, True),
+    ],
+)
+def test_who_stands_at_the_edge_of_a_crossing_whose_light_says_so_waits(
+    along_m: float, speed_mps: float, shown: SignalState, owes: bool
+) -> None:
+    foot = next(foot for foot in urban().crossings if foot.crossing.signal >= 0)
+    crossing_s_own = (foot.crossing.signal, foot.crossing.link)
+
+    def light(signal: int, link: int) -> int:
+        return shown if (signal, link) == crossing_s_own else SignalState.UNAVAILABLE
+
+    owed = RightOfWay(urban()).owed(before(foot.line_m, 20.0), somebody(foot, along_m, speed_mps), light)
+    assert owed == (pytest.approx((20.0, 0.0)) if owes else NOTHING_OWED)
+
+
 def test_far_crossings_are_nobody_s_business_yet() -> None:
     foot = crossing()
     assert RightOfWay(urban()).owed(before(foot.line_m, 120.0), somebody(foot, 1.0), dark) == NOTHING_OWED
