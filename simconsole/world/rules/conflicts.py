@@ -2,6 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
+from itertools import accumulate
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -169,10 +170,20 @@ class _Ways:
             if part is not None:
                 met.append(int(np.flatnonzero(apart_m < ZONE_M)[0]))
                 parts.append(part)
-        if not parts or min(met) * _STEP_M < _INSIDE_M:
+        if not parts:
             return None
-        x, y = line[min(met)].tolist()
+        # Maps of SUMO's tell where vehicles wait: between the lanes of a movement. Who has passed that place goes on,
+        # for all others, and they wait for it.
+        place = min(*met, *self._waits(own))
+        if place * _STEP_M < _INSIDE_M:
+            return None
+        x, y = line[place].tolist()
         return (x, y), Watched(*np.concatenate(parts, axis=1))
+
+    def _waits(self, own: Connection) -> list[int]:
+        """Return the last points before the places where a movement waits inside the junction, as its map has them."""
+        lengths_m = accumulate(self._map.lanes[lane].length_m for lane in own.via[:-1])
+        return [int(length_m / _STEP_M) for length_m in lengths_m]
 
     def _looks(self, one: Connection) -> Array:
         """Return the direction in which a movement's lane comes to the junction, float64 [2]."""
