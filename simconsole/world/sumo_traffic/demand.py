@@ -2,13 +2,13 @@
 
 from collections import defaultdict
 from collections.abc import Iterator
-from itertools import pairwise
 from typing import Final, NamedTuple
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
 from simconsole.world.roads.road_map import ROAD, Array, RoadMap
+from simconsole.world.sumo_traffic.walks import pavements_of, walks
 
 VAN_SHARE: Final = 0.15
 _SPEED_SHARE: Final = 0.6  # of the limit, that a vehicle makes on its way on average
@@ -43,7 +43,7 @@ def demand(road_map: RoadMap, *, vehicles: int, pedestrians: int, seed: int, hor
     Args:
         road_map: the roads.
         vehicles: how many drive at the beginning, and about as many later.
-        pedestrians: how many walk, from pavement to pavement.
+        pedestrians: how many walk, along pavements and over crossings.
         seed: of all chance.
         horizon_s: for so long (s) there is somebody on the road.
     """
@@ -110,21 +110,18 @@ def _walk(roads: _Roads, rng: np.random.Generator, for_s: float, *, anywhere: bo
 
 
 def _people(road_map: RoadMap, count: int, rng: np.random.Generator, horizon_s: float) -> Iterator[_Trip]:
-    """Yield people who walk between pavements, one way after the other."""
-    pavements = [
-        edge.id
-        for edge in road_map.edges
-        if edge.function == ROAD and edge.lanes and not road_map.lanes[edge.lanes[0]].drivable
-    ]
-    if len(pavements) < 2:
+    """Yield people who walk along pavements and over crossings."""
+    ways = pavements_of(road_map)
+    if not ways.pavements:
         return
     for number in range(count):
-        ends = [pavements[int(rng.integers(len(pavements)))] for _ in range(max(2, int(horizon_s / 60.0)))]
-        walks = "".join(
-            f"<personTrip from={quoteattr(start)} to={quoteattr(end)}/>"
-            for start, end in pairwise(ends)
-            if start != end
+        legs = "".join(
+            f"<walk edges={quoteattr(' '.join(road_map.edges[edge].id for edge in walk.edges))}"
+            f' arrivalPos="{-1 if walk.ends_at_end else 1}"/>'
+            for walk in walks(ways, rng, horizon_s)
         )
-        if walks:
-            text = f'    <person id="person{number}" depart="0.00" departPos="random">{walks}</person>\n'
-            yield _Trip(0.0, 1_000_000 + number, text)
+        yield _Trip(
+            0.0,
+            1_000_000 + number,
+            f'    <person id="person{number}" depart="0.00" departPos="random">{legs}</person>\n',
+        )
