@@ -117,7 +117,7 @@ def _people(road_map: RoadMap, count: int, rng: np.random.Generator, horizon_s: 
     for number in range(count):
         legs = "".join(
             f"<walk edges={quoteattr(' '.join(road_map.edges[edge].id for edge in walk.edges))}"
-            f' arrivalPos="{-1 if walk.ends_at_end else 1}"/>'
+            f' arrivalPos="{-0.01 if walk.ends_at_end else 0}"/>'
             for walk in walks(ways, rng, horizon_s)
         )
         yield _Trip(

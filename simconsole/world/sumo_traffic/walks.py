@@ -51,14 +51,22 @@ class Walk(NamedTuple):
     ends_at_end: bool  # at which end of the last one
 
 
+class _Areas(NamedTuple):
+    """Walking areas by their numbers: outlines, and boxes a little larger than they are, float64 [areas, 2]."""
+
+    outlines: list[Array]
+    lows: Array
+    highs: Array
+
+
 def pavements_of(road_map: RoadMap) -> Pavements:
     """Return the pavements of a map beside roads, and where people get from one to another."""
     lanes = road_map.lanes
-    outlines, on_lanes = _areas(road_map)
-    joined = list(range(len(outlines)))
+    beside, on_lanes = _walking_areas(road_map)
+    joined = list(range(len(beside.outlines)))
     for edge in road_map.edges:
         if edge.function == CROSSING and edge.lanes:
-            met = [area for end in (0, -1) for area in _meeting(lanes[edge.lanes[0]].line[end, :2], outlines)]
+            met = [area for end in (0, -1) for area in _meeting(lanes[edge.lanes[0]].line[end, :2], beside)]
             groups = {joined[area] for area in met}
             joined = [min(groups) if group in groups else group for group in joined]
     found: list[Pavement] = []
@@ -67,14 +75,14 @@ def pavements_of(road_map: RoadMap) -> Pavements:
         if edge.function != ROAD or not edge.lanes or lanes[edge.lanes[0]].drivable:
             continue
         lane = lanes[edge.lanes[0]]
-        ends = [_meeting(lane.line[end, :2], outlines) for end in (0, -1)]
+        ends = [_meeting(lane.line[end, :2], beside) for end in (0, -1)]
         begin, end = (joined[areas[0]] if areas else -1 for areas in ends)
         for group, at_end in ((begin, False), (end, True)):
             if group >= 0:
                 groups_met[group].append(Met(len(found), at_end))
         shared = frozenset(area for end in (0, -1) for area in _meeting(lane.line[end, :2], on_lanes))
         found.append(Pavement(place, lane.length_m, begin, end, shared))
-    return Pavements(tuple(found), tuple(tuple(groups_met[group]) for group in range(len(outlines))))
+    return Pavements(tuple(found), tuple(tuple(groups_met[group]) for group in range(len(beside.outlines))))
 
 
 def walks(ways: Pavements, rng: np.random.Generator, for_s: float) -> list[Walk]:
@@ -106,30 +114,30 @@ def _leads(pavement: Pavement, ways: Pavements, met: Met) -> bool:
     return other.edge != pavement.edge and not other.on_lanes & pavement.on_lanes
 
 
-def _areas(road_map: RoadMap) -> tuple[list[Array], list[Array]]:
+def _walking_areas(road_map: RoadMap) -> tuple[_Areas, _Areas]:
     """Return the outlines of walking areas: of those beside the carriageway, and of those on it."""
     driven = np.vstack([_points(lane.line[:, :2]) for lane in road_map.lanes if lane.drivable] or [np.zeros((0, 2))])
-    areas = [edge for edge in road_map.edges if edge.function == WALKING_AREA and edge.lanes]
-    outlines = [road_map.lanes[edge.lanes[0]].line[:, :2] for edge in areas]
-    lie_on = [(_away_m(_near(driven, outline), outline) < _ON_LANE_M).any() for outline in outlines]
-    beside, on_lanes = ([one for one, lies in zip(outlines, lie_on, strict=True) if lies == on] for on in (False, True))
-    return beside, on_lanes
+    places = [edge.lanes[0] for edge in road_map.edges if edge.function == WALKING_AREA and edge.lanes]
+    every = _boxed([road_map.lanes[lane].line[:, :2] for lane in places])
+    beside: list[Array] = []
+    on_lanes: list[Array] = []
+    for outline, low, high in zip(*every, strict=True):
+        near = driven[((driven > low) & (driven < high)).all(axis=1)]
+        lies_on_lanes = (_away_m(near, outline) < _ON_LANE_M).any()
+        (on_lanes if lies_on_lanes else beside).append(outline)
+    return _boxed(beside), _boxed(on_lanes)
 
 
-def _meeting(end: Array, outlines: list[Array]) -> list[int]:
+def _boxed(outlines: list[Array]) -> _Areas:
+    lows = np.array([outline.min(axis=0) for outline in outlines]).reshape(-1, 2) - 1.0
+    highs = np.array([outline.max(axis=0) for outline in outlines]).reshape(-1, 2) + 1.0
+    return _Areas(outlines, lows, highs)
+
+
+def _meeting(end: Array, areas: _Areas) -> list[int]:
     """Return which areas a place is at."""
-    return [
-        number
-        for number, outline in enumerate(outlines)
-        if len(near := _near(end[None], outline)) and _away_m(near, outline)[0] < _MEETS_M
-    ]
-
-
-def _near(points: Array, outline: Array) -> Array:
-    """Return those of the points that may be near an outline."""
-    low, high = outline.min(axis=0) - 1.0, outline.max(axis=0) + 1.0
-    near: Array = points[((points > low) & (points < high)).all(axis=1)]
-    return near
+    near = np.flatnonzero(((areas.lows < end) & (end < areas.highs)).all(axis=1)).tolist()
+    return [number for number in near if _away_m(end[None], areas.outlines[number])[0] < _MEETS_M]
 
 
 def _away_m(points: Array, outline: Array) -> Array:
