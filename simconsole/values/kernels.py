@@ -94,6 +94,18 @@ def clip(value: float, low: float, high: float) -> float:
 
 
 @kernel
+def steady_clip(value: float, low: float, high: float) -> float:
+    """Return the same as `clip`, sooner for a value that stays within its limits, or at one of them, for many steps."""
+    if value < low:
+        foreseen()
+        value = low
+    if value > high:
+        foreseen()
+        value = high
+    return value
+
+
+@kernel
 def is_finite(value: float) -> bool:
     """Return False for NaN and both infinities, by arithmetic alone (equal in both executions)."""
     return value - value == 0.0
