@@ -65,6 +65,15 @@ def forget() -> None:
     """
 
 
+def foreseen() -> None:
+    """Do nothing; a branch that begins with this stays a jump in compiled code.
+
+    Of a short branch the compiler rather computes both ways and chooses: what follows waits for both and for the
+    condition. Where a branch mostly goes the way that it went in the step before, a processor foresees the jump and
+    goes on without waiting for anything.
+    """
+
+
 @kernel
 def put(row: Row, start: int, values: Iterable[float]) -> None:
     """Write a NamedTuple of floats into `row` from `start`."""
@@ -80,6 +89,18 @@ def clip(value: float, low: float, high: float) -> float:
     if value < low:  # two separate tests, no `elif`: they compile to two instructions, a maximum and a minimum
         value = low
     if value > high:
+        value = high
+    return value
+
+
+@kernel
+def steady_clip(value: float, low: float, high: float) -> float:
+    """Return the same as `clip`, sooner for a value that stays within its limits, or at one of them, for many steps."""
+    if value < low:
+        foreseen()
+        value = low
+    if value > high:
+        foreseen()
         value = high
     return value
 

@@ -1,6 +1,7 @@
 """The helpers that every kernel is made of, at their edges."""
 
 import math
+import struct
 
 import numpy as np
 import pytest
@@ -8,7 +9,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from simconsole.values.host.jit import compiled
-from simconsole.values.kernels import approach, clip, forget, is_finite, is_kernel, is_stage, kernel, put, stage
+from simconsole.values.kernels import (
+    approach,
+    clip,
+    forget,
+    is_finite,
+    is_kernel,
+    is_stage,
+    kernel,
+    put,
+    stage,
+    steady_clip,
+)
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
 bounded = st.floats(-1e6, 1e6)
@@ -31,6 +43,14 @@ def test_clip_stays_inside_and_moves_nothing_that_is_inside(value: float, one: f
     clipped = clip(value, low, high)
     assert low <= clipped <= high
     assert clipped == value or not low <= value <= high
+
+
+@given(finite, bounded, bounded)
+def test_a_steady_clip_has_the_bits_of_a_clip(value: float, one: float, other: float) -> None:
+    low, high = sorted((one, other))
+    expected = struct.pack("d", clip(value, low, high))
+    assert struct.pack("d", steady_clip(value, low, high)) == expected
+    assert struct.pack("d", compiled(steady_clip)(value, low, high)) == expected
 
 
 def test_clip_lets_nan_through_so_that_finiteness_must_be_asked_first() -> None:

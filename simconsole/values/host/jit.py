@@ -25,7 +25,7 @@ import numpy as np
 
 from simconsole.values.host import lowering
 from simconsole.values.host.files import held_alone
-from simconsole.values.kernels import forget, is_kernel, is_stage
+from simconsole.values.kernels import foreseen, forget, is_kernel, is_stage
 from simconsole.values.layout import Part, read, write
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -36,6 +36,9 @@ _COMPILER: Final = b"".join(Path(source).read_bytes() for source in (__file__, l
 _OPTIONS: Final[dict[str, Any]] = {"fastmath": False, "error_model": "numpy", "_nrt": False}
 """A kernel's arrays are its caller's, it makes none: without numba's runtime it counts no references to them. Counting
 took two thirds of the time of kernels that hand on tuples of arrays."""
+
+_PRIMITIVES: Final = (forget, foreseen, read, write)
+"""What `lowering` teaches numba to compile."""
 
 KEEP_UNUSED_S: Final = 30 * 24 * 3600.0
 """Compiled code that nobody has loaded for a month is removed when something new is compiled."""
@@ -102,7 +105,7 @@ def _enclosed(function: Callable[..., Any]) -> dict[str, Any]:
 
 def _stamp(value: object, user: Callable[..., Any]) -> str:
     """Return text that identifies a value which a kernel uses from outside, the same in every process."""
-    if value is user or value is forget or value is read or value is write:
+    if value is user or any(value is one for one in _PRIMITIVES):
         return "itself"
     if is_kernel(value):
         return digest(value)

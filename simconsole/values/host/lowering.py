@@ -1,16 +1,18 @@
 """numba extensions: the kernel primitives that are no kernels themselves, and a compiler for what is inlined."""
 
+from collections.abc import Callable
 from functools import cache
 from importlib import import_module
 from typing import Any
 
-from simconsole.values.kernels import forget
+from simconsole.values.kernels import foreseen, forget
 from simconsole.values.layout import Part, read, write
 
 
 def teach() -> None:
-    """Register `kernels.forget`, `layout.read` and `layout.write` with numba; once in a process."""
-    _teach_forget()
+    """Register `kernels.forget`, `kernels.foreseen`, `layout.read` and `layout.write` with numba; once in a process."""
+    _teach_empty(forget, "~{memory}")
+    _teach_empty(foreseen, "")
     _teach_parts()
 
 
@@ -85,18 +87,23 @@ def memory_of(kind: Any) -> tuple[Any, Any]:
     return keep, kept
 
 
-def _teach_forget() -> None:
-    """Compile `forget` to a barrier: an empty instruction that the compiler must assume changes memory."""
+def _teach_empty(function: Callable[[], None], changes: str) -> None:
+    """Compile a function to a barrier: an empty instruction that the compiler must leave where it is.
+
+    Args:
+        function: of no arguments.
+        changes: what the compiler must assume it to change, as LLVM writes it.
+    """
     types: Any = import_module("numba.core.types")
     extending: Any = import_module("numba.extending")
     ir: Any = import_module("llvmlite.ir")
 
     def lower(context: Any, builder: Any, _signature: Any, _arguments: Any) -> Any:
-        builder.asm(ir.FunctionType(ir.VoidType(), []), "", "~{memory}", [], True)
+        builder.asm(ir.FunctionType(ir.VoidType(), []), "", changes, [], True)
         return context.get_dummy_value()
 
-    extending.type_callable(forget)(lambda _context: lambda: types.none)
-    extending.lower_builtin(forget)(lower)
+    extending.type_callable(function)(lambda _context: lambda: types.none)
+    extending.lower_builtin(function)(lower)
 
 
 def _teach_parts() -> None:

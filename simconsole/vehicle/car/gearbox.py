@@ -9,7 +9,7 @@ lever where the gearbox is while the clutch is closed.
 from math import sqrt
 from typing import Final, NamedTuple
 
-from simconsole.values.kernels import approach, clip, kernel
+from simconsole.values.kernels import approach, clip, foreseen, kernel
 from simconsole.values.signals import GearFault, Request
 from simconsole.vehicle.car.parameters import GearParameters
 from simconsole.vehicle.car.state import Gearbox
@@ -208,6 +208,7 @@ def automatic_clutch(p: GearParameters, box: Gearbox, request: Request, turning:
     share = clip(torque * p.per_clutch_nm, 0.0, 1.0)
     target = 0.0  # fully closed, as with the pedal released
     if share < 1.0:
+        foreseen()
         target = p.bite_open - sqrt(share) * (p.bite_open - p.bite_closed)
     rate = p.clutch_opening_per_s if target > box.clutch else p.clutch_closing_per_s
     return approach(box.clutch, target, rate * step_s)

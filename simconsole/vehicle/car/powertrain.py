@@ -9,7 +9,7 @@ stand with no creep. Left and right are always treated alike, so that mirrored d
 
 from typing import Final, NamedTuple
 
-from simconsole.values.kernels import approach, clip, kernel
+from simconsole.values.kernels import approach, clip, kernel, steady_clip
 
 MOST_SWEEPS: Final = 4.0
 
@@ -48,9 +48,10 @@ class Inertia(NamedTuple):
 @kernel
 def slowed(s: Shafts, flywheel: Inertia, wheel: Inertia, most: Capacity) -> Shafts:
     """Return the shafts after the frictions that work against standing parts: in the engine, and both brakes."""
-    engine_nms = clip(s.engine_impulse_nms + s.engine_radps * flywheel.kgm2, -most.engine_nms, most.engine_nms)
-    left_nms = clip(s.left_impulse_nms + s.left_radps * wheel.kgm2, -most.left_nms, most.left_nms)
-    right_nms = clip(s.right_impulse_nms + s.right_radps * wheel.kgm2, -most.right_nms, most.right_nms)
+    # While everything turns all three stay at their limits, at rest within them: then no speed waits for another.
+    engine_nms = steady_clip(s.engine_impulse_nms + s.engine_radps * flywheel.kgm2, -most.engine_nms, most.engine_nms)
+    left_nms = steady_clip(s.left_impulse_nms + s.left_radps * wheel.kgm2, -most.left_nms, most.left_nms)
+    right_nms = steady_clip(s.right_impulse_nms + s.right_radps * wheel.kgm2, -most.right_nms, most.right_nms)
     return Shafts(
         engine_radps=s.engine_radps - (engine_nms - s.engine_impulse_nms) * flywheel.per_kgm2,
         left_radps=s.left_radps - (left_nms - s.left_impulse_nms) * wheel.per_kgm2,
@@ -68,14 +69,14 @@ def coupled(s: Shafts, ratio: float, clutch_kgm2: float, flywheel: Inertia, whee
     """Return the shafts after the frictions between them: the clutch, then the lock, which leaves it as it is."""
     half = 0.5 * ratio
     slip = s.engine_radps - half * (s.left_radps + s.right_radps)
-    clutch_nms = clip(s.clutch_impulse_nms + slip * clutch_kgm2, -most.clutch_nms, most.clutch_nms)
+    clutch_nms = steady_clip(s.clutch_impulse_nms + slip * clutch_kgm2, -most.clutch_nms, most.clutch_nms)
     more = clutch_nms - s.clutch_impulse_nms
     left = s.left_radps + more * (half * wheel.per_kgm2)
     right = s.right_radps + more * (half * wheel.per_kgm2)
     lock_nms = s.lock_impulse_nms
     bound = most.lock_nms + most.lock_share * abs(ratio * clutch_nms)
     if bound > 0.0:
-        lock_nms = clip(lock_nms - (left - right) * (0.5 * wheel.kgm2), -bound, bound)
+        lock_nms = steady_clip(lock_nms - (left - right) * (0.5 * wheel.kgm2), -bound, bound)
         left = left + (lock_nms - s.lock_impulse_nms) * wheel.per_kgm2
         right = right - (lock_nms - s.lock_impulse_nms) * wheel.per_kgm2
     engine = s.engine_radps - more * flywheel.per_kgm2

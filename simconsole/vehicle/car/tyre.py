@@ -11,7 +11,7 @@ beyond that slides along, at every speed, locked wheels included.
 from math import sqrt
 from typing import NamedTuple
 
-from simconsole.values.kernels import clip, kernel
+from simconsole.values.kernels import clip, foreseen, kernel
 from simconsole.vehicle.car.parameters import AxleParameters
 
 PEAK_DEMAND = 2.0
@@ -104,6 +104,7 @@ def tyre(
     stiffness_y = axle.stiffness_y_per_m * firm
     demand = sqrt(stiffness_x * x * (stiffness_x * x) + stiffness_y * y * (stiffness_y * y)) * (1.0 / grip)
     if demand > axle.slide_demand:
+        foreseen()
         share = axle.slide_demand / demand
         x = x * share
         y = y * share
@@ -115,6 +116,7 @@ def tyre(
     square = force_x * force_x + force_y * force_y
     limit = grip * load_n
     if square > limit * limit:
+        foreseen()
         share = limit / sqrt(square)
         force_x = force_x * share
         force_y = force_y * share

@@ -1,11 +1,15 @@
 """What numba is taught compiles to what the plain functions do."""
 
+import math
+
+import numba
 import numpy as np
 import pytest
 from numba.core.errors import TypingError
 
+from simconsole.values.host import lowering
 from simconsole.values.host.jit import compiled
-from simconsole.values.kernels import Row, kernel
+from simconsole.values.kernels import Row, foreseen, kernel
 from simconsole.values.layout import write
 from tests.values.drawing import SHIFTED, Line, Point, Width, turned
 
@@ -15,6 +19,26 @@ def test_compiled_code_reads_and_writes_the_same() -> None:
     slow, fast = np.full(9, -1.0), np.full(9, -1.0)
     assert compiled(turned)(row, fast) == turned(row, slow) == 0.0
     assert fast.tolist() == slow.tolist() == [-1.0, -1.0, -1.0, 4.0, 5.0, 2.0, 7.0, 1.0, -1.0]
+
+
+@kernel
+def doubled_below_one(value: float) -> float:
+    if value < 1.0:
+        foreseen()
+        value = 2.0 * value
+    return value
+
+
+@pytest.mark.parametrize(("value", "expected"), [(0.25, 0.5), (1.0, 1.0), (math.inf, math.inf)])
+def test_a_foreseen_branch_gives_the_same_in_both_executions(value: float, expected: float) -> None:
+    assert compiled(doubled_below_one)(value) == doubled_below_one(value) == expected
+
+
+def test_a_foreseen_branch_stays_a_jump() -> None:
+    lowering.teach()
+    machine_code = numba.njit(numba.float64(numba.float64))(doubled_below_one)
+    (intermediate,) = machine_code.inspect_llvm().values()
+    assert " select " not in intermediate
 
 
 @kernel
