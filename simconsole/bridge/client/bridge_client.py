@@ -23,7 +23,7 @@ import msgspec
 
 from simconsole.bridge.client.client_connection import ABNORMAL, ClientConnection
 from simconsole.bridge.messages import Registry
-from simconsole.bridge.protocol.backoff import CAP_S, DEAD_AFTER_S, FIRST_S, Backoff, Liveness
+from simconsole.bridge.protocol.backoff import CAP_S, DEAD_AFTER_S, FIRST_S, HUNG_AFTER_S, Backoff, Liveness
 from simconsole.bridge.protocol.client_protocol import (
     Answer,
     Callback,
@@ -83,8 +83,9 @@ class BridgeClient:
             on_state: called with each change of the connection's state.
             first_s: the first pause between two attempts.
             cap_s: the longest, without its scatter.
-            dead_after_s: how long the server may be silent, and its system acknowledge nothing, before it counts as
-                gone; infinite where whoever uses this client learns of its end in another way.
+            dead_after_s: how long the server may be silent before it counts as gone; on Linux for HUNG_AFTER_S while
+                its system acknowledges what it is sent. Infinite where whoever uses this client learns of its end in
+                another way.
             answers_together: what is published while messages that came together are returned goes together, with the
                 last of them or in the next `receive`: for who answers several topics of one sender.
 
@@ -98,6 +99,7 @@ class BridgeClient:
         self._on_state = on_state
         self._backoff = Backoff(first_s, cap_s)
         self._liveness = Liveness(dead_after_s=dead_after_s)
+        self._hung_after_s = max(HUNG_AFTER_S, dead_after_s)
         self._chance = random.Random()
         self._next_attempt_s = 0.0
         self._received: deque[Received] = deque()
@@ -314,6 +316,16 @@ class BridgeClient:
         if self._connection.is_open:
             self._answer(messages is None)
 
+    def _is_gone(self, now_s: float) -> bool:
+        """Return whether a silent server is gone, and does not wait for others as it does in lockstep.
+
+        The machine of one that waits acknowledges; so does that of one that hangs, and what stands between, a tunnel
+        say, for one that is gone.
+        """
+        if self._liveness.silence_s(now_s) >= self._hung_after_s:
+            return True
+        return self._liveness.is_dead(now_s) and self._connection.is_unacknowledged
+
     def _answer(self, is_silent: bool) -> None:
         """Send the replies to what was received, and check that the server is alive."""
         try:
@@ -321,8 +333,7 @@ class BridgeClient:
                 self._connection.send(self.protocol.replies.popleft())
             now_s = time.monotonic()
             self._liveness.heard(self._connection.heard_s)
-            # A server that waits for others, as in lockstep, is not a machine that is gone: that acknowledges nothing.
-            if is_silent and self._liveness.is_dead(now_s) and self._connection.is_unacknowledged:
+            if is_silent and self._is_gone(now_s):
                 raise BridgeError(f"{self.url}: the server has been silent for too long")
             if self._liveness.ping_due(now_s):
                 self._connection.ping()

@@ -8,6 +8,8 @@ CAP_S: Final = 1.5
 JITTER: Final = 0.25
 PING_AFTER_S: Final = 1.0
 DEAD_AFTER_S: Final = 3.0
+HUNG_AFTER_S: Final = 90.0
+"""Longer than a console waits for anybody, which is 60 s at most."""
 AWAY_S: Final = 1.5
 """Who waits for something to come, and looks again only after longer, was away: a ping is due after 1 s."""
 
@@ -33,7 +35,7 @@ class Backoff:
 
 
 class Liveness:
-    """Silence on a connection: after 1 s a ping is due, once a second; after 3 s it is dead.
+    """Silence on a connection: after 1 s a ping is due, once a second; after 3 s it counts as dead.
 
     Only silence that was listened to counts: where this process was stopped, or its whole machine stood still, what the
     other side has sent meanwhile is still to be read, or to be sent.
@@ -67,7 +69,11 @@ class Liveness:
 
     def is_dead(self, now_s: float) -> bool:
         """Return whether the other side has been silent for too long."""
-        return now_s - self._heard_s >= self._dead_after_s
+        return self.silence_s(now_s) >= self._dead_after_s
+
+    def silence_s(self, now_s: float) -> float:
+        """Return how long the other side has been silent."""
+        return now_s - self._heard_s
 
     def ping_due(self, now_s: float) -> bool:
         """Return whether to ping now, and take it as done."""
@@ -77,7 +83,7 @@ class Liveness:
         return due
 
     def patience_s(self, now_s: float) -> float:
-        """Return how long until a ping is due or the connection counts as dead, which it is not told twice."""
+        """Return how long until a ping is due or the connection counts as dead; once it does, until the next ping."""
         ask_s = max(self._heard_s, self._pinged_s) + self._ping_after_s
         dead_s = self._heard_s + self._dead_after_s
         return max(0.0, (ask_s if self.is_dead(now_s) else min(ask_s, dead_s)) - now_s)

@@ -1,6 +1,7 @@
 """What the servers share of sockets: listening, addresses, TLS options, time limits, TCP state."""
 
 import os
+import platform
 import socket
 import ssl
 import struct
@@ -13,19 +14,22 @@ HANDSHAKE_S: Final = 5.0
 """How long a client may take until its connection is a WebSocket (N12)."""
 CLOSE_S: Final = 1.0
 """How long a client may take to answer a close frame."""
+PATIENCE_MS: Final = 2000
+"""Who is pinged once a second is gone only if it has not acknowledged the ping before the last one either: the last may
+be under way, or lost once."""
 _BACKLOG: Final = 64
 _UNACKNOWLEDGED_AT: Final = 24
 _LAST_ACKNOWLEDGED_AT: Final = 56
 """Offsets of tcpi_unacked and tcpi_last_ack_recv (ms) in Linux' struct tcp_info."""
 
 
-def is_unacknowledged(sock: socket.socket, patience_ms: int = 1000) -> bool:
+def is_unacknowledged(sock: socket.socket, patience_ms: int = PATIENCE_MS) -> bool:
     """Return whether something was sent and the other machine has acknowledged nothing for `patience_ms`.
 
     That tells a machine that is gone from a program that is slow, whose system still acknowledges (within 200 ms).
     Where the system does not say (Linux does), nobody who is silent is trusted.
     """
-    option = getattr(socket, "TCP_INFO", None)
+    option = getattr(socket, "TCP_INFO", None) if platform.system() == "Linux" else None
     if option is None:
         return True
     try:

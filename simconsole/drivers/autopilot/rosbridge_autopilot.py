@@ -103,7 +103,7 @@ def run(
         delay_s: from an odometry's stamp to the moment at which the command that answers it acts.
         tracker: how it steers, one of `tracker_settings.TRACKERS`.
         gate: what the console lets pass of it.
-        dead_after_s: how long the server may be silent before it counts as gone.
+        dead_after_s: as `BridgeClient` takes it.
         plan_hz: how often a second it tells what it plans, in the odometry's time; 0: never.
         speed_advice: come to lights at green where a legal speed does so, by what their messages tell.
 

@@ -157,9 +157,11 @@ class _Ways:
         return Watched(*np.concatenate(parts, axis=1)) if parts else None
 
     def oncoming(self, own: Connection) -> tuple[tuple[float, float], Watched] | None:
-        """Return where a movement meets the first way of oncoming vehicles that go first, and their ways; None: none.
+        """Return where a movement waits inside for oncoming vehicles that go first, and their ways; None: nowhere.
 
-        Who waits there is in nobody's way: others wait for them, or are stopped by lights.
+        That is before the first of those ways, where who waits is in nobody's way: others wait for them, or are stopped
+        by lights. Maps of SUMO's tell where vehicles wait, between the lanes of a movement: who has passed that place
+        goes on, for all others, and they wait for it.
         """
         line, looks = self._driven(own), self._looks(own)
         met, parts = [], []
@@ -172,18 +174,16 @@ class _Ways:
                 parts.append(part)
         if not parts:
             return None
-        # Maps of SUMO's tell where vehicles wait: between the lanes of a movement. Who has passed that place goes on,
-        # for all others, and they wait for it.
-        place = min(*met, *self._waits(own))
+        place = min((*met, *self._waits(own)))
         if place * _STEP_M < _INSIDE_M:
             return None
         x, y = line[place].tolist()
         return (x, y), Watched(*np.concatenate(parts, axis=1))
 
     def _waits(self, own: Connection) -> list[int]:
-        """Return the last points before the places where a movement waits inside the junction, as its map has them."""
+        """Return the last points before places inside the junction where vehicles wait, as the map has them."""
         lengths_m = accumulate(self._map.lanes[lane].length_m for lane in own.via[:-1])
-        return [int(length_m / _STEP_M) for length_m in lengths_m]
+        return [int(length_m / _STEP_M) for length_m in lengths_m if length_m >= _INSIDE_M + _STEP_M]
 
     def _looks(self, one: Connection) -> Array:
         """Return the direction in which a movement's lane comes to the junction, float64 [2]."""

@@ -111,6 +111,8 @@ def _walk(roads: _Roads, rng: np.random.Generator, for_s: float, *, anywhere: bo
 
 def _people(road_map: RoadMap, count: int, rng: np.random.Generator, horizon_s: float) -> Iterator[_Trip]:
     """Yield people who walk along pavements and over crossings."""
+    if not count:
+        return
     ways = pavements_of(road_map)
     if not ways.pavements:
         return

@@ -66,7 +66,7 @@ def pavements_of(road_map: RoadMap) -> Pavements:
     joined = list(range(len(beside.outlines)))
     for edge in road_map.edges:
         if edge.function == CROSSING and edge.lanes:
-            met = [area for end in (0, -1) for area in _meeting(lanes[edge.lanes[0]].line[end, :2], beside)]
+            met = [area for end in (0, -1) for area in _meeting(lanes[edge.lanes[0]].line[end, :2], beside)[:1]]
             groups = {joined[area] for area in met}
             joined = [min(groups) if group in groups else group for group in joined]
     found: list[Pavement] = []
@@ -135,9 +135,10 @@ def _boxed(outlines: list[Array]) -> _Areas:
 
 
 def _meeting(end: Array, areas: _Areas) -> list[int]:
-    """Return which areas a place is at."""
+    """Return which areas a place is at, the nearest one first."""
     near = np.flatnonzero(((areas.lows < end) & (end < areas.highs)).all(axis=1)).tolist()
-    return [number for number in near if _away_m(end[None], areas.outlines[number])[0] < _MEETS_M]
+    away_m = {number: float(_away_m(end[None], areas.outlines[number])[0]) for number in near}
+    return sorted((number for number in near if away_m[number] < _MEETS_M), key=away_m.__getitem__)
 
 
 def _away_m(points: Array, outline: Array) -> Array:

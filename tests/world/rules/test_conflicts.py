@@ -9,8 +9,8 @@ from simconsole.world.roads.lane_graph import LaneGraph, Leg
 from simconsole.world.roads.road_route import route_over
 from simconsole.world.roads.road_world import Roads, roads_of
 from simconsole.world.route import Route
-from simconsole.world.rules.conflicts import CRITICAL_S, LEFT_FROM_MAJOR_S, ROUNDABOUT_S, SEEN_M, duties
-from tests.world.nets import straight_map
+from simconsole.world.rules.conflicts import CRITICAL_S, LEFT_FROM_MAJOR_S, ROUNDABOUT_S, SEEN_M, _Ways, duties
+from tests.world.nets import generated_map, straight_map
 
 
 def urban() -> tuple[Roads, Route]:
@@ -66,6 +66,14 @@ def test_who_turns_left_at_lights_may_wait_inside_before_the_ways_of_oncoming_ve
             towards = entry.watched.cosine[far] * own[0] + entry.watched.sine[far] * own[1]
             assert far.any()
             assert (towards < 0.0).all(), "they come from the other side"
+
+
+def test_movements_of_any_junction_are_looked_at() -> None:
+    """Over one lane inside the junction, too, where the map tells no place to wait, and one oncoming way only."""
+    road_map = generated_map("--rand", "--rand.iterations", "100", "--seed", "6", "--tls.guess")
+    ways = _Ways(road_map)
+    lanes = [len(one.via) for one in road_map.connections if ways.oncoming(one) is not None]
+    assert {1, 2} <= set(lanes)
 
 
 def test_critical_headways_of_minor_roads_are_longest_to_the_left() -> None:

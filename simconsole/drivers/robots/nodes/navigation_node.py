@@ -275,7 +275,7 @@ def run(
         lockstep: the console waits for each command, and this program waits for SLAM.
         stop: called after every message and four times a second.
         patience_s: how long to try to connect.
-        dead_after_s: how long the server may be silent before it counts as gone.
+        dead_after_s: as `BridgeClient` takes it.
 
     Raises:
         BridgeError: no server answers at `url`.

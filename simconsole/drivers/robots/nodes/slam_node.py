@@ -166,7 +166,7 @@ def run(
         stop: called after every message and four times a second.
         ready: called once it listens.
         patience_s: how long to try to connect.
-        dead_after_s: how long the server may be silent before it counts as gone.
+        dead_after_s: as `BridgeClient` takes it.
 
     Raises:
         BridgeError: no server answers at `url`.
