@@ -15,6 +15,7 @@ from websockets.sync.server import Server, ServerConnection
 from websockets.sync.server import serve as serve_websockets
 
 from simconsole.bridge.client.bridge_client import BridgeClient
+from simconsole.bridge.protocol.backoff import HUNG_AFTER_S
 from simconsole.bridge.protocol.client_protocol import Goal
 from simconsole.values.errors import BridgeError, LocalProtocolError
 from tests.bridge.networks import far_end, go_deaf
@@ -252,6 +253,10 @@ def test_silent_server_whose_machine_acknowledges_is_waited_for() -> None:
             assert received is not None
             assert received.message.data == "at last"
             assert client.connections == 1
+            client._liveness.begin(stamp_ns() / 1e9 - HUNG_AFTER_S)
+            client._connection.heard_s = 0.0
+            assert client.receive(0.02) is None
+            assert "silent" in client.failure, "it hangs, or something between acknowledges in its place"
         server.shutdown()
         thread.join(timeout=PATIENCE_S)
 

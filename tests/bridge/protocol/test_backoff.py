@@ -27,6 +27,7 @@ def test_silence_is_asked_about_each_second_and_ends_after_three() -> None:
     assert liveness.ping_due(12.0)
     assert liveness.patience_s(12.5) == 0.5
     assert not liveness.is_dead(12.99)
+    assert liveness.silence_s(12.99) == pytest.approx(2.99)
     assert liveness.is_dead(13.0)
     liveness.heard(12.99)
     liveness.heard(5.0)
