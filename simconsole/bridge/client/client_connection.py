@@ -63,6 +63,7 @@ class ClientConnection:
         self._socket: socket.socket | None = None
         self._web: WebSocketClientProtocol | None = None
         self._messages = MessageAssembler(MAX_MESSAGE_BYTES)
+        self._early: list[bytes] = []  # what came together with the answer to the handshake
         self.heard_s = 0.0
         """When something last arrived, on the monotonic clock."""
         self.close_code: int | None = None
@@ -86,6 +87,7 @@ class ClientConnection:
             OtherDriveError: the server belongs to another drive.
         """
         self._messages = MessageAssembler(MAX_MESSAGE_BYTES)
+        self._early.clear()
         self.close_code = None
         deadline_s = time.monotonic() + self._timeout_s
         try:
@@ -107,9 +109,11 @@ class ClientConnection:
         self._flush()
         web = self._web
         while web.state is State.CONNECTING and web.handshake_exc is None:
-            if self.read(deadline_s - time.monotonic()) is None:
+            early = self.read(deadline_s - time.monotonic())
+            if early is None:
                 self.abort()
                 raise BridgeError(f"{self.url}: no answer within {self._timeout_s} s")
+            self._early += early
         if web.handshake_exc is not None:
             self.abort()
             raise self._refusal(web.handshake_exc)
@@ -160,6 +164,9 @@ class ClientConnection:
         """
         if self._web is None or self._socket is None:
             raise BridgeError(f"{self.url}: not connected")
+        if self._early:
+            early, self._early = self._early, []
+            return early
         web = self._web
         try:
             self._socket.settimeout(max(timeout_s, 1e-6))

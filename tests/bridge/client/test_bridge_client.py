@@ -154,6 +154,34 @@ def test_answers_to_what_came_together_go_together(faking: Callable[..., str], m
     assert [b"/a" in heard[4], b"/b" in heard[5], b"at once" in heard[6]] == [True, True, True]
 
 
+def test_what_comes_together_with_the_answer_to_the_handshake_is_received() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+
+        def serve() -> None:
+            peer, _ = listener.accept()
+            web = ServerProtocol()
+            with peer:
+                while web.state is State.CONNECTING:
+                    web.receive_data(peer.recv(1000))
+                    for event in web.events_received():
+                        assert isinstance(event, Request)
+                        web.send_response(web.accept(event))
+                web.send_text(b'{"op":"publish","topic":"/s","msg":{"data":"at once"}}')
+                peer.sendall(b"".join(web.data_to_send()))
+                while peer.recv(1000):
+                    pass
+
+        thread = threading.Thread(target=serve)
+        thread.start()
+        with BridgeClient(f"ws://127.0.0.1:{listener.getsockname()[1]}") as client:
+            client.subscribe("/s", "std_msgs/String")
+            client.connect()
+            received = client.receive(1.0)
+            assert received is not None
+            assert received.message.data == "at once"
+        thread.join(timeout=PATIENCE_S)
+
+
 def test_time_out_returns_none_and_the_connection_stays(
     serving: Callable[..., Any], snapshot: Callable[..., Any]
 ) -> None:
