@@ -116,7 +116,7 @@ def tracked_on(
         f"outputs: {{hud: null, scene: null, report: false, bridge: {{port: 0, link: {link}}}}}\n"
         "devices: {driver: virtual, person: {sit_s: 0.5, cruise_kmh: 20, top_gear: 2, autonomy: "
         f"{{distance_m: {hand_over_m}}}}}}}\n"
-        "mode: {pacing: lockstep}\n"
+        "mode: {pacing: lockstep, answer_timeout_s: 60}\n"
     )
     ended = (Mode.MINIMAL_RISK, Mode.STOPPED, Mode.EMERGENCY_STOP)
 

@@ -41,7 +41,7 @@ def parked(folder: Path, start: str, vehicle: str = "hatchback", duration_s: flo
         f"scenario: {{vehicle: {vehicle}, duration_s: {duration_s}, start: {start}, faults: {faults}}}\n"
         "features: {autopilot: course.yaml}\n"
         f"outputs: {{hud: null, scene: null, report: false, bridge: {{port: 0, link: {LINK}}}}}\n"
-        f"devices: {{driver: 'script:{folder / 'person.yaml'}'}}\nmode: {{pacing: lockstep}}\n"
+        f"devices: {{driver: 'script:{folder / 'person.yaml'}'}}\nmode: {{pacing: lockstep, answer_timeout_s: 60}}\n"
     )
     (folder / "person.yaml").write_text(PERSON)
     drive(resolve(load_session(str(folder / "session.yaml"))), folder / "bundle")

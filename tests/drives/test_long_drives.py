@@ -33,7 +33,7 @@ devices:
   cockpit: t500rs_th8rs
   driver: virtual
   person: {title: hands over, sit_s: 1.0, cruise_kmh: 36, top_gear: 3, autonomy: {distance_m: 110}}
-mode: {tick_hz: 250, pacing: lockstep}
+mode: {tick_hz: 250, pacing: lockstep, answer_timeout_s: 60}
 """
 
 

@@ -125,7 +125,8 @@ def test_in_a_bend_the_person_takes_over_and_stays_in_the_lane(
         f"{{x_m: {start.x_m}, y_m: {start.y_m}, yaw_deg: {yaw_deg}}}}}\n"
         "outputs: {hud: null, scene: null, report: false, bridge: {port: 0}}\n"
         "devices: {driver: virtual, person: {along: route, sit_s: 0.3, cruise_kmh: 50, autonomy: {distance_m: 40}, "
-        f"take_back: {{distance_m: {take_back_m}}}, stop: {{distance_m: {end_m}}}}}}}\nmode: {{pacing: lockstep}}\n"
+        f"take_back: {{distance_m: {take_back_m}}}, stop: {{distance_m: {end_m}}}}}}}\n"
+        "mode: {pacing: lockstep, answer_timeout_s: 60}\n"
     )
     drive(resolve(load_session(str(tmp_path / "session.yaml"))), tmp_path / "bundle")
     table = open_bundle(tmp_path / "bundle").log.table()

@@ -14,7 +14,7 @@ from tests.world.nets import TOWN, generated
 
 LEAD = "{gap_m: 30, speeds: [{speed_kmh: 25}, {from_s: 14, speed_kmh: 0}, {from_s: 24, speed_kmh: 20}]}"
 BY_ROS = (
-    "features: {autopilot: world.yaml}\nmode: {pacing: lockstep}\n"
+    "features: {autopilot: world.yaml}\nmode: {pacing: lockstep, answer_timeout_s: 60}\n"
     "devices: {driver: virtual, person: {sit_s: 0.5, cruise_kmh: 15, top_gear: 2, autonomy: {distance_m: 5}}}\n"
 )
 BY_HAND = "devices: {driver: virtual, person: {sit_s: 0.5, along: route}}\nmode: {pacing: free}\n"

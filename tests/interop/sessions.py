@@ -23,6 +23,7 @@ devices:
   driver: none
 mode:
   pacing: lockstep
+  answer_timeout_s: 60
 """
 
 

@@ -50,6 +50,7 @@ devices:
   driver: none
 mode:
   pacing: lockstep
+  answer_timeout_s: 60
 """
 
 
