@@ -37,6 +37,17 @@ def faking() -> Iterator[Callable[[Callable[[ServerConnection], None]], str]]:
         thread.join(timeout=PATIENCE_S)
 
 
+def accepted(peer: socket.socket) -> ServerProtocol:
+    """Read a client's handshake; the answer to it waits to be sent."""
+    web = ServerProtocol()
+    while web.state is State.CONNECTING:
+        web.receive_data(peer.recv(1000))
+        for event in web.events_received():
+            assert isinstance(event, Request)
+            web.send_response(web.accept(event))
+    return web
+
+
 @pytest.mark.parametrize("url", ["http://localhost", "localhost:9090", "ws://"])
 def test_what_is_no_address(url: str) -> None:
     with pytest.raises(BridgeError, match="url: "):
@@ -156,13 +167,8 @@ def test_what_comes_together_with_the_answer_to_the_handshake_is_received() -> N
 
         def serve() -> None:
             peer, _ = listener.accept()
-            web = ServerProtocol()
             with peer:
-                while web.state is State.CONNECTING:
-                    web.receive_data(peer.recv(1000))
-                    for event in web.events_received():
-                        assert isinstance(event, Request)
-                        web.send_response(web.accept(event))
+                web = accepted(peer)
                 web.send_text(b'{"op":"publish","topic":"/s","msg":{"data":"at once"}}')
                 peer.sendall(b"".join(web.data_to_send()))
                 while peer.recv(1000):
@@ -331,14 +337,9 @@ def test_good_bye_is_heard_by_who_was_busy_when_the_server_said_it_and_went() ->
 
         def leave() -> None:
             peer, _ = listener.accept()
-            web = ServerProtocol()
             with peer:
-                while web.state is State.CONNECTING:
-                    web.receive_data(peer.recv(1000))
-                    for event in web.events_received():
-                        assert isinstance(event, Request)
-                        web.send_response(web.accept(event))
-                    peer.sendall(b"".join(web.data_to_send()))
+                web = accepted(peer)
+                peer.sendall(b"".join(web.data_to_send()))
                 select.select([peer], [], [], PATIENCE_S)  # something has come, which is left unread
                 web.send_close(1001)
                 peer.sendall(b"".join(web.data_to_send()))
