@@ -27,10 +27,9 @@ def test_silent_server_whose_machine_is_gone_is_given_up(serving: Callable[..., 
         # As if three seconds had passed in silence, and a ping had not been answered.
         client._liveness.begin(stamp_ns() / 1e9 - 3.5)
         client._connection.heard_s = 0.0
-        wait_until(lambda: client.receive(0.01) is None and client.state == "connecting", "the end of its patience")
-        assert client.connections == 1
-        assert "silent" in client.failure
+        # One call may both give it up and connect again.
         wait_until(lambda: client.receive(0.01) is None and client.connections == 2, "the next connection")
+        assert "silent" in client.failure
         assert client.state == "connected"
 
 
