@@ -21,7 +21,6 @@ from simconsole.control.modes.decision import Decision, decide, takeover_stage
 from simconsole.control.modes.restart import Restart, restart_of
 from simconsole.control.modes.takeover import (
     WheelWatch,
-    pull,
     steering_taken,
     throttle_held,
     throttle_overrides,
@@ -36,6 +35,7 @@ from simconsole.control.requests.tick_context import TickContext
 from simconsole.control.shared import shared_authority
 from simconsole.values.kernels import kernel
 from simconsole.values.signals import ArbiterMemory, Arbitration, Link, Mode, Notice, Request
+from simconsole.values.signals.hands import wilful_torque
 
 
 class Observed(NamedTuple):
@@ -116,7 +116,7 @@ def _observe(now: TickContext) -> Observed:
         now.driver.hand_wheel_rad,
         now.driver.hand_wheel_radps - now.explained_radps,
         now.explained_rad,
-        pull(now.human_nm, now.hand_wheel_radps2, now.carried_nm),
+        wilful_torque(now.human_nm, now.hand_wheel_radps2) - now.carried_nm,
         watched(now.before.mode),
         person.wheel_trusted > 0.0,
         now.settings,

@@ -13,8 +13,6 @@ from simconsole.values.kernels import kernel
 from simconsole.values.signals import Mode
 
 _UNREFERENCED: Final = -1.0
-RESTING_HANDS_KGM2: Final = 0.02
-"""Moment of inertia of two hands that rest on a rim: each 0.6 % of 75 kg (de Leva 1996), at 0.15 m."""
 
 
 class WheelWatch(NamedTuple):
@@ -22,22 +20,6 @@ class WheelWatch(NamedTuple):
 
     reference_rad: float  # where it was at engagement
     past_ticks: float  # samples in a row beyond the threshold; -1: the reference must be taken anew
-
-
-@kernel
-def pull(human_nm: float, hand_wheel_radps2: float, carried_nm: float) -> float:
-    """Return how much of the person's torque speaks for a take-over, in N m.
-
-    Hands that only rest on the rim have a mass, which a wheel that its motor turns fast speeds up and slows down: that
-    torque is theirs and no wish. It is left out where it explains some of what is seen, and never adds to it.
-
-    Args:
-        human_nm: The person's torque, estimated, left-positive.
-        hand_wheel_radps2: The wheel's angular acceleration.
-        carried_nm: How much of the torque was held at engagement already.
-    """
-    size_nm, wilful_nm = abs(human_nm), abs(human_nm + RESTING_HANDS_KGM2 * hand_wheel_radps2)
-    return (wilful_nm if wilful_nm < size_nm else size_nm) - carried_nm
 
 
 @kernel
@@ -58,7 +40,8 @@ def watch_wheel(
         hand_wheel_rad: Angle now, left-positive.
         hand_wheel_radps: Its rate, less what the wheel's motor explains of it.
         explained_rad: How far the wheel's motor alone has moved it since engagement; 0 without a motor.
-        pull_nm: How much of the person's torque speaks for a take-over (`pull`); 0 without a motor.
+        pull_nm: How much of the person's torque speaks for a take-over: what may be meant (`wilful_torque`), less what
+            they held at engagement already; 0 without a motor.
         watching: Whether the mode is one that a person can take over from; if not, the reference follows the wheel.
         trusted: Whether the wheel is there; after a gap the reference is taken anew, wherever it comes back.
         settings: Thresholds.

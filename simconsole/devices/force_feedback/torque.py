@@ -25,6 +25,7 @@ from simconsole.values.signals import (
     WheelMemory,
     WheelTorque,
 )
+from simconsole.values.signals.hands import wilful_torque
 from simconsole.values.validity import is_trusted
 
 _STANDING: Final = int(Event.LOOP_STALL | Event.PAUSE)
@@ -215,7 +216,8 @@ def unattended_motion(
     """Return where the motor alone would have the wheel: the rim under a servo of its own, with nobody at it.
 
     Hands that only rest on the rim add drag and inertia: while the person's torque is no more than that, the model is
-    drawn to the wheel's real angle. So a take-over needs both, the angle and a person's torque.
+    drawn to the wheel's real angle, however fast the motor turns it. So a take-over needs both, the angle and a
+    person's torque.
 
     Args:
         driver: Angle and rate read now.
@@ -239,7 +241,8 @@ def unattended_motion(
     rim = turn(start, motor_nm, force.inertia_kgm2, force.motor_damping_nms, force.motor_friction_nm, tick_s)
     smooth = tick_s / (tick_s + rate_filter_s)
     explained_radps = before.explained_radps + smooth * (rim.radps - before.explained_radps)
-    if abs(estimated.human_nm) < share * force.resting_hands_nm:
+    radps2 = (estimated.radps - before.wheel_radps) / tick_s if before.live > 0.0 else 0.0
+    if wilful_torque(estimated.human_nm, radps2) < share * force.resting_hands_nm:
         go = tick_s / (tick_s + RESTING_S)
         rim = Rim(rim.rad + go * (estimated.rad - rim.rad), rim.radps + go * (estimated.radps - rim.radps))
         explained_radps = driver.hand_wheel_radps

@@ -6,7 +6,6 @@ import pytest
 
 from simconsole.control.modes.takeover import (
     WheelWatch,
-    pull,
     steering_taken,
     throttle_held,
     throttle_overrides,
@@ -153,19 +152,3 @@ def test_person_who_pulls_hard_enough_for_long_enough_takes_the_wheel(control: C
         watch = watch_wheel(watch, 0.0, 0.0, 0.0, control.steering_override_nm + 0.1, True, True, control)
     assert steering_taken(watch, control)
     assert watch_wheel(watch, 0.0, 0.0, 0.0, control.steering_override_nm - 0.1, True, True, control).past_ticks == 0.0
-
-
-def test_torque_by_which_a_fast_wheel_turns_resting_hands_is_no_pull() -> None:
-    assert pull(1.45, -36.0, 0.0) == pytest.approx(0.73)
-    assert pull(-1.45, 36.0, 0.0) == pytest.approx(0.73)
-
-
-@pytest.mark.parametrize("human_nm", [3.0, -3.0])
-@pytest.mark.parametrize("hand_wheel_radps2", [0.0, 60.0])
-def test_a_push_counts_whole_however_fast_it_turns_the_wheel(human_nm: float, hand_wheel_radps2: float) -> None:
-    assert pull(human_nm, math.copysign(hand_wheel_radps2, human_nm), 0.0) == 3.0
-
-
-def test_a_wheel_that_nobody_touches_is_not_pulled_and_an_unknown_motion_explains_nothing() -> None:
-    assert pull(0.0, 100.0, 0.0) == 0.0
-    assert pull(2.0, math.nan, 0.5) == 1.5

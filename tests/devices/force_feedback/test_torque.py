@@ -7,11 +7,13 @@ from typing import Any
 
 import pytest
 
+from simconsole.devices.force_feedback.estimator import WheelEstimate
 from simconsole.devices.force_feedback.force_settings import NO_FORCE, ForceSettings, force_settings
 from simconsole.devices.force_feedback.rim import Rim
 from simconsole.devices.force_feedback.torque import (
     CENTRING_LEAD_RAD,
     CENTRING_RADPS,
+    unattended_motion,
     wheel_torque,
 )
 from simconsole.profiles.device import CockpitProfile
@@ -190,3 +192,21 @@ def test_a_centred_wheel_is_held_until_the_pedals_are_released(motor: Motor) -> 
     torque = motor.tick(aside, mode=float(Mode.MANUAL), ticks=500, notice=Notice.RELEASE_PEDALS)
     assert torque.torque_nm == pytest.approx(-0.05 * motor.force.servo_nm_per_rad, abs=0.1)
     assert motor.tick(aside, events=float(Event.PAUSE), notice=Notice.RELEASE_PEDALS).torque_nm == 0.0
+
+
+@pytest.mark.parametrize(("radps2", "is_drawn"), [(-36.0, True), (0.0, False), (36.0, False)])
+def test_torque_of_resting_hands_on_a_wheel_that_turns_fast_draws_the_model_to_it(
+    radps2: float, is_drawn: bool, force: ForceSettings
+) -> None:
+    """1.5 N m are a push; but 0.7 of them hands that weigh 20 g m2 have in a wheel that spins up with 36 rad/s2."""
+    before = WheelMemory(*(0.0,) * len(WheelMemory._fields))._replace(
+        live=1.0, wheel_rad=0.8, wheel_radps=-2.0, model_rad=0.7, model_radps=-2.5
+    )
+    estimated = WheelEstimate(0.8, -2.0 + radps2 * TICK_S, 1.5, 1.5, 1.0)
+    driver = PERSON._replace(hand_wheel_rad=0.8, hand_wheel_radps=-2.0)
+    after = unattended_motion(driver, estimated, Rim(0.7, -2.5), 1.0, True, True, before, force, 0.02, TICK_S)
+    alone = unattended_motion(
+        driver, estimated._replace(human_nm=9.0), Rim(0.7, -2.5), 1.0, True, True, before, force, 0.02, TICK_S
+    )
+    assert (after.rad > alone.rad) == is_drawn
+    assert (after.radps > alone.radps) == is_drawn
