@@ -3,8 +3,6 @@
 from collections.abc import Callable, Sequence
 from typing import Any, Final, Protocol
 
-import numpy as np
-
 from simconsole.bridge.console.input_slots import Question
 from simconsole.values.kernels import Row
 from simconsole.values.latency import Hop
@@ -59,7 +57,6 @@ class LockstepLink:
     ) -> None:
         self._bridge = bridge
         self._period_ticks = period_ticks
-        self._later = np.arange(float(period_ticks))  # by how many ticks a command is older in the ticks of a period
         self._timeout_s = timeout_s
         self._stop = stop
         self._silent_at: float | None = None  # the command's sequence number when the controller went silent
@@ -126,7 +123,8 @@ class LockstepLink:
         count = min(len(commands), self.unseen(tick) + 1)
         commands[:count] = remote
         if remote.age_ticks < NEVER_TICKS:
-            commands[:count, _AGE_AT] += self._later[:count]
+            for later in range(1, count):
+                commands[later, _AGE_AT] = remote.age_ticks + later
         return count
 
     def _look(self, tick: int) -> RemoteCommand:
