@@ -13,7 +13,7 @@ from simconsole.bridge.protocol.topic_registry import Accept
 from simconsole.profiles.bridge import BridgeProfile
 from simconsole.values.errors import RemoteProtocolError
 from simconsole.values.kernels import is_finite
-from simconsole.values.signals import NO_COMMAND, Event, RemoteKind
+from simconsole.values.signals import Event, RemoteCommand, RemoteKind
 from simconsole.values.trigonometry import atan2
 from simconsole.values.units import NS_PER_S
 
@@ -119,7 +119,7 @@ class CommandDecoder:
     def _control(self, plain: dict[str, Any] | None, message: Any, now_ns: int) -> None:
         _require(plain, "lateral.steering_tire_angle", "longitudinal.acceleration")
         lateral, longitudinal, limits = message.lateral, message.longitudinal, self._limits
-        command = NO_COMMAND._replace(
+        command = RemoteCommand(
             kind=float(RemoteKind.ACCELERATION),
             road_wheel_rad=_within("lateral.steering_tire_angle", lateral.steering_tire_angle, limits.road_wheel_rad),
             road_wheel_radps=_within(
@@ -127,7 +127,6 @@ class CommandDecoder:
             ),
             speed_mps=_within("longitudinal.velocity", longitudinal.velocity, limits.speed_mps),
             accel_mps2=_within("longitudinal.acceleration", longitudinal.acceleration, limits.accel_mps2),
-            direction=0.0,
         )
         self._inputs.accept(command, self._order(CONTROL, message.stamp), now_ns)
 
@@ -136,7 +135,7 @@ class CommandDecoder:
         _in_frame(message.header, self._body_frames)
         drive, limits = message.drive, self._limits
         speed_mps = _within("drive.speed", drive.speed, limits.speed_mps)
-        command = NO_COMMAND._replace(
+        command = RemoteCommand(
             kind=float(RemoteKind.SPEED),
             road_wheel_rad=_within("drive.steering_angle", drive.steering_angle, limits.road_wheel_rad),
             road_wheel_radps=_within(
@@ -153,12 +152,11 @@ class CommandDecoder:
         _require(plain, "actuation.accel_cmd", "actuation.brake_cmd", "actuation.steer_cmd")
         _in_frame(message.header, self._body_frames)
         asked = message.actuation
-        command = NO_COMMAND._replace(
+        command = RemoteCommand(
             kind=float(RemoteKind.ACTUATION),
             road_wheel_rad=_within("actuation.steer_cmd", asked.steer_cmd, self._limits.road_wheel_rad),
             throttle=_within("actuation.accel_cmd", asked.accel_cmd, 1.0, 0.0),
             brake=_within("actuation.brake_cmd", asked.brake_cmd, 1.0, 0.0),
-            direction=0.0,
         )
         self._inputs.accept(command, self._order(ACTUATION, message.header.stamp), now_ns)
 
@@ -173,7 +171,7 @@ class CommandDecoder:
 
     def _move(self, twist: Any, path: str, stamp: tuple[str, Any] | None, now_ns: int) -> None:
         speed_mps = _within(f"{path}linear.x", twist.linear.x, self._limits.speed_mps)
-        command = NO_COMMAND._replace(
+        command = RemoteCommand(
             kind=float(RemoteKind.TWIST),
             speed_mps=speed_mps,
             yaw_rate_radps=_within(f"{path}angular.z", twist.angular.z, self._limits.yaw_rate_radps),
@@ -188,7 +186,7 @@ class CommandDecoder:
         square = turn.x * turn.x + turn.y * turn.y + turn.z * turn.z + turn.w * turn.w
         if not abs(square - 1.0) <= _UNIT_TOLERANCE:
             raise RemoteProtocolError("not a unit quaternion - at `$.pose.orientation`")
-        command = NO_COMMAND._replace(
+        command = RemoteCommand(
             kind=float(RemoteKind.POSE),
             speed_mps=self._ball_speed_mps,
             x_m=_within("pose.position.x", position.x, self._limits.position_m),
@@ -196,6 +194,7 @@ class CommandDecoder:
             yaw_rad=atan2(
                 2.0 * (turn.w * turn.z + turn.x * turn.y), square - 2.0 * (turn.y * turn.y + turn.z * turn.z)
             ),
+            direction=1.0,
         )
         self._inputs.accept(command, self._order(BALL_POSE, message.header.stamp), now_ns)
 
@@ -279,11 +278,10 @@ def _in_frame(header: Any, frames: tuple[str, ...]) -> None:
 def _within(path: str, value: float, most: float, least: float | None = None) -> float:
     """Return the value if it is finite and in its range; `least` is `-most` unless given."""
     least = -most if least is None else least
-    if not is_finite(value):
-        raise RemoteProtocolError(f"not finite - at `$.{path}`")
-    if not least <= value <= most:
-        raise RemoteProtocolError(f"{value:g} is not within {least:g} to {most:g} - at `$.{path}`")
-    return value
+    if least <= value <= most:
+        return value
+    wrong = f"{value:g} is not within {least:g} to {most:g}" if is_finite(value) else "not finite"
+    raise RemoteProtocolError(f"{wrong} - at `$.{path}`")
 
 
 def _sign(speed_mps: float) -> float:

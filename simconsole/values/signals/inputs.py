@@ -32,23 +32,23 @@ class DeviceSample(NamedTuple):
 class RemoteCommand(NamedTuple):
     """The newest accepted command of the ROS side, or of the ECU on CAN; fields its kind does not use are 0."""
 
-    kind: float
-    sequence: float  # commands accepted since the start; 0 before the first
-    refused: float  # commands refused since the start
-    age_ticks: float  # since receipt
-    road_wheel_rad: float
-    road_wheel_radps: float
-    speed_mps: float
-    accel_mps2: float
-    yaw_rate_radps: float
-    throttle: float
-    brake: float
-    x_m: float
-    y_m: float
-    yaw_rad: float
-    direction: float  # 1 drive, -1 reverse, 0 neutral (Autoware GearCommand)
-    turn_indicators: float  # 1 left, -1 right, 0 off
-    hazard_lights: float  # 1: on
+    kind: float = 0.0
+    sequence: float = 0.0  # commands accepted since the start; 0 before the first
+    refused: float = 0.0  # commands refused since the start
+    age_ticks: float = 0.0  # since receipt
+    road_wheel_rad: float = 0.0
+    road_wheel_radps: float = 0.0
+    speed_mps: float = 0.0
+    accel_mps2: float = 0.0
+    yaw_rate_radps: float = 0.0
+    throttle: float = 0.0
+    brake: float = 0.0
+    x_m: float = 0.0
+    y_m: float = 0.0
+    yaw_rad: float = 0.0
+    direction: float = 0.0  # 1 drive, -1 reverse, 0 neutral (Autoware GearCommand)
+    turn_indicators: float = 0.0  # 1 left, -1 right, 0 off
+    hazard_lights: float = 0.0  # 1: on
 
 
 class EventInput(NamedTuple):
@@ -62,7 +62,7 @@ class EventInput(NamedTuple):
 NO_SAMPLE: Final = DeviceSample(*(0.0,) * 9, *(NEVER_TICKS,) * 4)
 """A cockpit whose devices are all gone."""
 
-NO_COMMAND: Final = RemoteCommand(*(0.0,) * len(RemoteCommand._fields))._replace(age_ticks=NEVER_TICKS, direction=1.0)
+NO_COMMAND: Final = RemoteCommand(age_ticks=NEVER_TICKS, direction=1.0)
 """A controller that has sent nothing; until it does, its direction counts as forwards."""
 
 NO_EVENTS: Final = EventInput(events=0.0)
