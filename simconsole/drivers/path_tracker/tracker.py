@@ -80,8 +80,10 @@ class Tracker:
         self._feedback, self._preview = _gains_by_speed(car, timing, weights)
         self._curvature_step_m, self._curvature = _curvatures(course)
         ahead_s = (np.arange(timing.preview_steps) + 0.5) * timing.period_s
-        moved = np.stack((np.ones_like(ahead_s), ahead_s, 0.5 * ahead_s * ahead_s))
-        self._steps = moved / self._curvature_step_m  # where the car will be, of its place, speed and acceleration
+        # Where the car will be, in steps of the curvature: by its place, its speed and its acceleration.
+        self._steps_per_m = 1.0 / self._curvature_step_m
+        self._steps_per_mps = ahead_s / self._curvature_step_m
+        self._steps_per_mps2 = 0.5 * ahead_s * ahead_s / self._curvature_step_m
         self._beyond: Literal["wrap", "clip"] = "wrap" if course.closed else "clip"
         self._command = 0.0  # the last command, as the tangent of the road-wheel angle
         self._wheel = 0.0  # where the wheels will be when the next command takes effect, by the model; a tangent too
@@ -141,8 +143,7 @@ class Tracker:
         """Return by how much the command's tangent should change in the coming period."""
         speed = seen.vx_mps
         row = min(max(int((speed - _SPEEDS_MPS[0]) / _SPEED_STEP_MPS + 0.5), 0), len(self._feedback) - 1)
-        one, per_mps, per_mps2 = self._steps
-        steps = one * s_m + per_mps * speed + per_mps2 * self.along.accel_mps2
+        steps = self._steps_per_mps * speed + self._steps_per_m * s_m + self._steps_per_mps2 * self.along.accel_mps2
         ahead = self._curvature.take(steps.astype(np.int64), mode=self._beyond)
         if not self._line.is_over(s_m):
             ahead += self._line.curvature(steps * self._curvature_step_m)
@@ -155,7 +156,7 @@ class Tracker:
             + wheel * self._wheel
             + command * self._command
         )
-        return -fed_back - float((self._preview[row] * ahead).sum())  # not `dot`: its order is the processor's
+        return -fed_back - float(np.add.reduce(self._preview[row] * ahead))  # not `dot`: its order is the processor's
 
     def _limited(self, change: float, speed: float, engaged: bool) -> float:
         """Return the command after a change, as far as steering and gate go; while not engaged no gate holds it."""
