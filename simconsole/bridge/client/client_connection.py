@@ -180,8 +180,8 @@ class ClientConnection:
         if data:
             self.heard_s = time.monotonic()
             frames, data = take_whole(web, data)
-            for frame in frames:
-                self._add(frame.opcode, frame.data, True, messages)
+            for opcode, content in frames:
+                self._add(opcode, content, True, messages)
             if not data:
                 return messages
             web.receive_data(data)

@@ -93,26 +93,30 @@ class LockstepConnection:
         """Whether the system took less than it was given."""
         return bool(self._unsent)
 
-    def read(self) -> None:
-        """Read once and process what arrived: the handshake, then messages."""
+    def read(self) -> bool:
+        """Read once and process what arrived: the handshake, then messages.
+
+        Returns:
+            Whether the protocol itself may have something to send, or the connection has ended.
+        """
         try:
             data = self.socket.recv(RECEIVE_BYTES)
             while isinstance(self.socket, ssl.SSLSocket) and self.socket.pending():
                 data += self.socket.recv(RECEIVE_BYTES)  # a selector does not see what TLS has read already
         except _WOULD_BLOCK:
-            return
+            return False
         except OSError:
             self.close()
-            return
+            return True
         has_ended = not data
         if data:
             self._checks.heard(time.monotonic_ns())
             frames, rest = take_whole(self._web, data)
-            for frame in frames:
+            for opcode, content in frames:
                 if self.session is not None and self._web.state is State.OPEN:
-                    self._take(frame.opcode, frame.data, True, self.session)
+                    self._take(opcode, content, True, self.session)
             if not rest and self._web.state is State.OPEN:
-                return
+                return False
             if rest:
                 self._web.receive_data(rest)
         else:
@@ -120,7 +124,7 @@ class LockstepConnection:
         self._collect()
         if len(self._unsent) > UNSENT_BYTES + 2 * self._profile.limits.queued_bytes:
             self.close()  # a client that sends pings without end and reads no answer
-            return
+            return True
         for event in self._web.events_received():
             if isinstance(event, Request):
                 self._answer(event)
@@ -128,6 +132,7 @@ class LockstepConnection:
                 self._take(event.opcode, bytes(event.data), event.fin, self.session)
         if has_ended or self._web.state is State.CLOSED:
             self.close()
+        return True
 
     def flush(self, now_ns: int) -> None:
         """Frame what waits in the session and send what the socket takes: all of it, or until it takes no more."""

@@ -303,9 +303,9 @@ class LockstepBridge:
                 self._pump_ros2(key.data)
                 continue
             connection: LockstepConnection = key.data
-            if mask & selectors.EVENT_READ:
-                connection.read()
-            self._send_waiting(connection)
+            has_something = mask & selectors.EVENT_READ and connection.read()
+            if has_something or mask & selectors.EVENT_WRITE:
+                self._send_waiting(connection)
         for connection in list(self._sending):  # a message that one client published may wait for another client
             self._send_waiting(connection)
 

@@ -97,8 +97,8 @@ class WebsocketsConnection(ServerConnection):
         now_ns = self._clock_ns()
         self._checks.heard(now_ns)
         frames, data = take_whole(self.protocol, data)
-        for frame in frames:
-            self._take(frame.opcode, frame.data, True, now_ns)
+        for opcode, content in frames:
+            self._take(opcode, content, True, now_ns)
         if frames and not data:
             return
         super().data_received(data)

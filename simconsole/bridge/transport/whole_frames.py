@@ -5,7 +5,7 @@ costs a tenth of what the library's generators do; everything else, and every mi
 """
 
 import os
-from typing import Final, NamedTuple
+from typing import Final
 
 from websockets.frames import apply_mask  # type: ignore[attr-defined]  # its compiled form where there is one
 from websockets.protocol import Protocol, Side, State
@@ -21,19 +21,12 @@ _TWO_BYTES: Final = 126
 _LONGEST: Final = 65_535
 
 
-class WholeFrame(NamedTuple):
-    """One message in one frame."""
-
-    opcode: int
-    data: bytes
-
-
-def take_whole(web: Protocol, data: bytes) -> tuple[list[WholeFrame], bytes]:
-    """Return the whole messages with which `data` begins, and the rest, which is for `web.receive_data`.
+def take_whole(web: Protocol, data: bytes) -> tuple[list[tuple[int, bytes]], bytes]:
+    """Return the whole messages with which `data` begins, each with its opcode, and the rest for `web.receive_data`.
 
     None are returned while the library is inside a frame or a message, or the connection is not open.
     """
-    frames: list[WholeFrame] = []
+    frames: list[tuple[int, bytes]] = []
     if web.state is not State.OPEN or web.current_size is not None or web.reader.buffer:
         return frames, data
     masked = web.side is Side.SERVER  # what a server gets is masked
@@ -51,7 +44,7 @@ def take_whole(web: Protocol, data: bytes) -> tuple[list[WholeFrame], bytes]:
         if end > size or length > longest:
             break
         content = apply_mask(data[start + 4 : end], data[start : start + 4]) if masked else data[start:end]
-        frames.append(WholeFrame(opcode, content))
+        frames.append((opcode, content))
         at = end
     return frames, data[at:] if at else data
 
