@@ -28,8 +28,6 @@ MAX_FRAME_BYTES: Final = 1 << 22
 TORN: Final = "torn"
 _HEAD: Final = Struct("<II")
 _TICK: Final = Struct("<q")
-_CHAINED: Final = Struct(f"<{HASH_BYTES}sq")
-"""What precedes a state vector while it is hashed: the hash before it, and its tick."""
 _MESSAGE: Final = Struct("<HI")
 _HASHER: Final = blake2b(digest_size=HASH_BYTES)
 
@@ -58,8 +56,9 @@ class Message(NamedTuple):
     content: bytes
 
 
-def _hash(content: bytes | memoryview) -> bytes:
+def _chained(previous: bytes, content: bytes) -> bytes:
     hasher = _HASHER.copy()  # takes half the time of a new one with a digest_size
+    hasher.update(previous)
     hasher.update(content)
     return hasher.digest()
 
@@ -71,18 +70,18 @@ def frame_size(width: int) -> int:
 
 def chain(previous: bytes, tick: int, content: bytes) -> bytes:
     """Return a stream's chained hash after a vector or message, from the hash before it."""
-    return _hash(previous + _TICK.pack(tick) + content)
+    return _chained(previous, _TICK.pack(tick) + content)
 
 
 def seal(previous: bytes, tick: int, vector: bytes, messages: bytes = b"") -> tuple[bytes, bytes]:
     """Return the frame of one tick and the state's chained hash in it; `messages` are sealed ones, in a row."""
     body = _TICK.pack(tick) + vector
-    digest = _hash(previous + body)
+    digest = _chained(previous, body)
     body += digest + messages
     return _HEAD.pack(len(body), crc32(body)) + body, digest
 
 
-def seal_block(previous: bytes, tick: int, vectors: Row, messages: bytes = b"") -> tuple[bytes | memoryview, bytes]:
+def seal_block(previous: bytes, tick: int, vectors: Row, messages: bytes = b"") -> tuple[bytes, bytes]:
     """Return the frames of ticks, one behind the other, as `seal` makes them, and the state's chained hash in the last.
 
     Args:
@@ -91,20 +90,13 @@ def seal_block(previous: bytes, tick: int, vectors: Row, messages: bytes = b"") 
         vectors: float64 [ticks, columns], the state vectors.
         messages: those of the first tick, sealed, in a row.
     """
-    size = frame_size(vectors.shape[1])
-    frames = np.empty((len(vectors), size // 8))  # a frame without messages is a whole number of float64 long
-    frames[:, 2:-1] = vectors
-    content = frames.data.cast("B")
-    digest, promised, behind = previous, size - _HEAD.size + len(messages), messages
+    content, size = vectors.tobytes(), 8 * vectors.shape[1]
+    frames: list[bytes] = []
     for at in range(0, len(content), size):
-        end = at + size
-        # Length and checksum take the place of the previous hash once the vector is hashed.
-        _CHAINED.pack_into(content, at, digest, tick)
-        digest = content[end - HASH_BYTES : end] = _hash(content[at : end - HASH_BYTES])
-        _HEAD.pack_into(content, at, promised, crc32(behind, crc32(content[at + _HEAD.size : end])))
-        promised, behind = size - _HEAD.size, b""
-        tick += 1
-    return (b"".join((content[:size], messages, content[size:])) if messages else content), digest
+        frame, previous = seal(previous, tick, content[at : at + size], messages)
+        frames.append(frame)
+        tick, messages = tick + 1, b""
+    return b"".join(frames), previous
 
 
 def seal_message(previous: bytes, tick: int, stream: int, content: bytes) -> tuple[bytes, bytes]:

@@ -218,7 +218,7 @@ class LogWriter:
     ) -> None:
         self.close()
 
-    def _problem(self, frame: bytes | memoryview) -> str | None:
+    def _problem(self, frame: bytes) -> str | None:
         """Write frames; return why they are not in the file, None if they are. What is written in part is truncated."""
         try:
             written = os.write(self._fd, frame)
