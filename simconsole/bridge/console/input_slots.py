@@ -1,11 +1,14 @@
 """The newest accepted command and the edges since the last tick: latest wins, however many arrive between two ticks."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
-from simconsole.values.signals import NEVER_TICKS, NO_COMMAND, Event, EventInput, RemoteCommand
+from simconsole.values.signals import NEVER_TICKS, NO_COMMAND, NO_EVENTS, Event, EventInput, RemoteCommand
 from simconsole.values.units import NS_PER_S
 
+_ASKED_FROM: Final = RemoteCommand._fields.index("road_wheel_rad")
+_ASKED_TO: Final = RemoteCommand._fields.index("direction")
+"""What a command asks for lies between; numbers and age before it, direction and lights behind it are the slot's."""
 OnCommand = Callable[[RemoteCommand, int | None], None]
 """Takes the command, its age 0, and when it was received in ns (None before the first)."""
 OnEvents = Callable[[int], None]
@@ -43,13 +46,12 @@ class BridgeInputs:
             now_ns: when it was received.
         """
         before = self.command
-        self.command = command._replace(
-            sequence=before.sequence + 1.0,
-            refused=before.refused,
-            age_ticks=0.0,
-            direction=command.direction or before.direction,
-            turn_indicators=before.turn_indicators,
-            hazard_lights=before.hazard_lights,
+        # In one piece: `_replace` looks up each of the fields by its name.
+        numbers = before.sequence + 1.0, before.refused
+        lights = before.turn_indicators, before.hazard_lights
+        direction = command.direction or before.direction
+        self.command = RemoteCommand._make(
+            (command.kind, *numbers, 0.0, *command[_ASKED_FROM:_ASKED_TO], direction, *lights)
         )
         self.receipt_ns, self.stamp_ns, self._receipt_tick = now_ns, stamp_ns, self.tick
         self._announce()
@@ -84,7 +86,7 @@ class BridgeInputs:
         command = self.command
         if self.receipt_ns is not None and tick - 1 > self._receipt_tick:  # fresh, its age is 0 already
             command = command._replace(age_ticks=float(tick - 1 - self._receipt_tick))
-        return command, EventInput(events=float(events))
+        return command, EventInput(float(events)) if events else NO_EVENTS
 
     def _announce(self) -> None:
         if self._on_command is not None:
