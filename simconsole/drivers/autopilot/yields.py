@@ -1,7 +1,8 @@
 """Where the autopilot waits for others: people on crossings, and vehicles that go first at junctions. Pure.
 
 From where road users were told to be and what lights were told to show (`world/rules/right_of_way.py`). The stop is
-decided as one for a light is; who steps out late is braked for as hard as it takes.
+decided as one for a light is; who steps out late is braked for as hard as it takes. A front that has come a little
+beyond the line meanwhile stops at once: nobody it owes anything passes that near to the line.
 """
 
 import math
@@ -44,7 +45,7 @@ class Yields:
             self._told = None
             front_m = s_m + self._front_m
             owed = self._right_of_way.owed(Motion(front_m, abs(speed_mps), stamp_s), users, self._light)
-            line_m = front_m + owed.yield_m if 0.0 < owed.yield_m < FAR else None
+            line_m = front_m + owed.yield_m if -GAP_M < owed.yield_m < FAR else None
             if line_m is None or self._line_m is None or abs(line_m - self._line_m) > GAP_M:
                 self._brake_mps2 = GENTLE_MPS2
             self._line_m = line_m

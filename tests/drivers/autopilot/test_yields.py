@@ -44,3 +44,14 @@ def test_old_messages_stop_nobody() -> None:
 def test_course_has_nobody_to_yield_to() -> None:
     assert yields(open_world(load_world("urban")), load_vehicle("hatchback"), None) is None
     assert yields(open_world(load_world("urban_signals")), load_vehicle("hatchback"), None) is not None
+
+
+@pytest.mark.parametrize(("beyond_m", "stops"), [(0.5 * GAP_M, True), (1.5 * GAP_M, False)])
+def test_a_front_that_comes_a_little_beyond_the_line_stops_and_one_that_is_through_goes_on(
+    beyond_m: float, stops: bool
+) -> None:
+    foot, others = crossing(), Yields(urban(), FRONT_M, None)
+    others.see(somebody(foot, 0.5), 10.0)
+    assert others.stop(foot.line_m - FRONT_M - 4.0, 4.0, 10.0) is not None
+    others.see(somebody(foot, 0.7), 10.1)
+    assert (others.stop(foot.line_m - FRONT_M + beyond_m, 1.0, 10.1) is not None) == stops

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from simconsole.drivers.path_tracker.speed_control import Leader, SpeedControl
+from simconsole.drivers.path_tracker.speed_profile import Stop
 from simconsole.drivers.path_tracker.tracker_settings import COMFORT
 from simconsole.world.course import Course
 
@@ -53,3 +54,19 @@ def test_a_vehicle_that_is_suddenly_near_is_braked_for_at_once_and_a_gone_one_fo
     assert hard[-1] == -6.0
     control.leader = None
     assert [control.step(300.0, 10.0).accel_mps2 for _ in range(400)][-1] > -0.5
+
+
+@pytest.mark.parametrize(
+    ("past_m", "speed_mps", "beyond_m"), [(0.2, 2.4, 1.0), (-2.0, 3.3, 0.0), (-12.0, 10.0, 0.0), (-20.0, 10.0, 0.0)]
+)
+def test_a_stop_that_takes_an_emergency_is_made_in_time_and_one_driven_past_at_once(
+    course: Course, past_m: float, speed_mps: float, beyond_m: float
+) -> None:
+    control = SpeedControl(course, COMFORT, PERIOD_S)
+    control.stop = Stop(300.0, 6.0)
+    s_m = 300.0 + past_m
+    while speed_mps > 0.0:
+        speed_mps = max(0.0, speed_mps + control.step(s_m, speed_mps).accel_mps2 * PERIOD_S)
+        s_m += speed_mps * PERIOD_S
+    assert -1.0 < s_m - 300.0 < beyond_m
+    assert control.step(s_m, 0.0).accel_mps2 < 0.0, "it stays"
