@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from simconsole.cli.main import main
-from tests.drives.console import Running, complaint, results, simconsole
+from tests.drives.console import Running, complaint, results, simconsole, within
 from tests.patience import wait_until
 
 FORGED_TICK = 400
@@ -200,16 +200,16 @@ def test_only_a_whole_bundle_is_signed(copy: Path, key: Path) -> None:
 
 def test_sign_says_what_it_needs(copy: Path, key: Path) -> None:
     for words in ((), (copy,), ("--key", key), (copy, "--key", key, "--remove"), (copy, "--new-key", key)):
-        assert "command line: BUNDLE --key FILE, BUNDLE --remove, or --new-key" in complaint(simconsole("sign", *words))
-    assert "exists; another file for the new key" in complaint(simconsole("sign", "--new-key", key))
-    assert "lab.pem.pub: no private key in PEM" in complaint(simconsole("sign", copy, "--key", f"{key}.pub"))
+        assert "command line: BUNDLE --key FILE, BUNDLE --remove, or --new-key" in complaint(within("sign", *words))
+    assert "exists; another file for the new key" in complaint(within("sign", "--new-key", key))
+    assert "lab.pem.pub: no private key in PEM" in complaint(within("sign", copy, "--key", f"{key}.pub"))
 
 
 def test_a_changed_manifest_is_one_line_to_every_command(copy: Path) -> None:
     path = copy / "manifest.json"
     path.write_bytes(path.read_bytes().replace(b'"lateness": "not paced"', b'"lateness": "all paced"'))
     for command in ("verify", "replay", "report"):
-        assert f"{path}: altered: sha256 " in complaint(simconsole(command, copy))
+        assert f"{path}: altered: sha256 " in complaint(within(command, copy))
 
 
 @pytest.mark.parametrize("command", ["compare", "replay"])
@@ -231,4 +231,4 @@ def test_tolerances_are_read_from_a_file(
 
 def test_a_tolerance_for_no_field_is_one_line(short: Path, tmp_path: Path) -> None:
     (tmp_path / "tolerances.yaml").write_text("vehicle.speed_kmh: 1\n")
-    assert "vehicle.speed_kmh" in complaint(simconsole("replay", short, "--tolerances", tmp_path / "tolerances.yaml"))
+    assert "vehicle.speed_kmh" in complaint(within("replay", short, "--tolerances", tmp_path / "tolerances.yaml"))

@@ -15,7 +15,7 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Origin
 
-from tests.drives.console import Running, complaint, results, simconsole
+from tests.drives.console import Running, complaint, results, simconsole, within
 from tests.drives.controllers import Controller, command
 from tests.paths import ROOT
 from tests.patience import PATIENCE_S, wait_until
@@ -124,7 +124,7 @@ def test_port_of_the_system_s_choice_is_said(tmp_path: Path) -> None:
 
 
 def test_a_port_that_is_none_is_one_line() -> None:
-    assert "outputs.bridge.port: value 70000" in complaint(simconsole("bridge", "serve", "--port", 70000))
+    assert "outputs.bridge.port: value 70000" in complaint(within("bridge", "serve", "--port", 70000))
 
 
 @pytest.mark.parametrize(
@@ -138,11 +138,11 @@ def test_a_port_that_is_none_is_one_line() -> None:
     ],
 )
 def test_limits_and_origins_are_options_that_are_checked(option: str, value: str, told: str) -> None:
-    assert told in complaint(simconsole("bridge", "serve", option, value))
+    assert told in complaint(within("bridge", "serve", option, value))
 
 
 def test_it_is_not_open_to_other_machines_by_accident() -> None:
-    refused = complaint(simconsole("bridge", "serve", "--host", "0.0.0.0", "--port", free_port()))
+    refused = complaint(within("bridge", "serve", "--host", "0.0.0.0", "--port", free_port()))
     assert "set tokens and certificate" in refused
 
 

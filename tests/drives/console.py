@@ -1,5 +1,7 @@
-"""Runs simconsole as people do: as a program, from the command line."""
+"""Runs simconsole as people do: as a program, from the command line; or without a program."""
 
+import contextlib
+import io
 import json
 import os
 import signal
@@ -9,6 +11,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
+from simconsole.cli.main import main
 from tests.patience import PATIENCE_S
 
 
@@ -32,6 +35,15 @@ def patient(patience_s: float, *arguments: object, **changes: str) -> "subproces
     return subprocess.run(
         words(*arguments), capture_output=True, text=True, timeout=patience_s, env=environment(**changes), check=False
     )
+
+
+def within(*arguments: object) -> "subprocess.CompletedProcess[str]":
+    """Run one command in this process, for what it refuses at once: no program has to start, and load all libraries."""
+    out, err = io.StringIO(), io.StringIO()
+    texts = [*map(str, arguments)]
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        code = main(texts)
+    return subprocess.CompletedProcess(texts, code, out.getvalue(), err.getvalue())
 
 
 def results(done: "subprocess.CompletedProcess[str]") -> dict[str, Any]:

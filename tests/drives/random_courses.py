@@ -1,5 +1,6 @@
 """Random closed courses, and one drive over each with the autopilot over the real WebSocket, behind the gate."""
 
+import math
 from pathlib import Path
 from typing import NamedTuple
 
@@ -107,8 +108,13 @@ def tracked_on(
     hand_over_m: float = 20.0,
     tracker: str = "preview",
     control: str = "{}",
+    until_m: float = math.inf,
 ) -> Tracked:
-    """Drive a lap, or an open route up to its end, in a world of `folder` or a shipped one, and measure."""
+    """Drive a lap, or an open route up to its end, in a world of `folder` or a shipped one, and measure.
+
+    A drive that goes no farther than `until_m` has driven its route once it is there.
+    """
+    length_m = min(route.length_m, until_m)
     (folder / "session.yaml").write_text(
         f"schema: 1\nenvironment: {{world: {world}}}\n"
         f"scenario: {{vehicle: {vehicle}, duration_s: 600}}\n"
@@ -123,7 +129,8 @@ def tracked_on(
     def watch(snapshot: Snapshot) -> bool:
         car = snapshot.vehicle
         at_end = car.distance_m > route.length_m - END_M and car.vx_mps < STANDING_MPS
-        over = car.distance_m > route.length_m + 10.0 if route.closed else at_end
+        goes_on = route.closed or until_m < route.length_m
+        over = car.distance_m > length_m + 10.0 if goes_on else at_end
         return snapshot.arbitration.mode in ended or over
 
     resolved = resolve(load_session(str(folder / "session.yaml")))
@@ -146,7 +153,7 @@ def tracked_on(
     accel, sequence = table.column("ros.accel_mps2")[commands], table.column("ros.sequence")[commands]
     missing_rad = np.abs(table.column("ros.road_wheel_rad") - table.column("command.road_wheel_rad"))[commands[1:] - 1]
     tick_hz = resolved.session.mode.tick_hz
-    left_m = route.length_m - float(place[-1])
+    left_m = length_m - float(place[-1])
     jerk = np.diff(accel) / (np.diff(sequence) * PERIOD_S)
     gentle = (np.abs(jerk) <= 3.0 + 1e-9) & (accel[1:] <= 1.6 + 1e-9) & (accel[1:] >= -2.0 - 1e-9)
     return Tracked(

@@ -3,20 +3,22 @@
 import socket
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from tests.drives.console import complaint, environment, simconsole
+from tests.drives.console import complaint, environment, simconsole, within
 from tests.patience import PATIENCE_S
 
+Run = Callable[..., "subprocess.CompletedProcess[str]"]
 SESSION = "schema: 1\noutputs: {hud: null, scene: null}\nmode: {pacing: free}\n"
 
 
-def drive(tmp_path: Path, *arguments: object) -> str:
+def drive(tmp_path: Path, *arguments: object, run: Run = within) -> str:
     """Drive, expecting a refusal that leaves no trace."""
     before = sorted(tmp_path.rglob("*"))
-    line = complaint(simconsole("drive", *arguments, "--headless", "--out", tmp_path / "out" / "bundle"))
+    line = complaint(run("drive", *arguments, "--headless", "--out", tmp_path / "out" / "bundle"))
     assert sorted(tmp_path.rglob("*")) == before, "nothing was made"
     assert line.startswith("simconsole drive: ")
     return line.removeprefix("simconsole drive: ")
@@ -84,7 +86,7 @@ def test_bad_words_name_the_key(tmp_path: Path, arguments: list[str], message: s
 
 
 def test_with_no_wheel_connected_a_seated_drive_names_what_is_missing(tmp_path: Path) -> None:
-    line = drive(tmp_path, "--driver", "sdl", "--for", 1)
+    line = drive(tmp_path, "--driver", "sdl", "--for", 1, run=simconsole)
     assert "044f:b65e" in line
     assert "wheel" in line
     assert line.endswith("not connected: nothing is; without it: --driver keyboard, or simconsole demo")
@@ -137,7 +139,7 @@ def test_a_free_drive_refuses_links_that_it_would_not_open(tmp_path: Path, link:
 def test_lockstep_needs_a_bridge(tmp_path: Path) -> None:
     session = tmp_path / "session.yaml"
     session.write_text("schema: 1\ndevices: {driver: none}\nmode: {pacing: lockstep}\n")
-    assert "outputs.bridge: value missing: " in drive(tmp_path, session, "--for", 1)
+    assert "outputs.bridge: value missing: " in drive(tmp_path, session, "--for", 1, run=simconsole)
 
 
 @pytest.mark.parametrize("pacing", ["realtime", "lockstep"])

@@ -23,6 +23,10 @@ PERSON = """points:
   - {time_s: 0.0, throttle: 0, brake: 0, clutch: 0, hand_wheel_deg: 0, gear: 0}
   - {time_s: 2.0, press: [autonomous]}
 """
+COLUMNS = (
+    *(f"vehicle.{name}" for name in ("x_m", "y_m", "distance_m", "vx_mps")),
+    *("arbitration.mode", "arbitration.refusal", "ros.accel_mps2"),
+)
 OPEN = CoursePlan(
     schema=1,
     title="open",
@@ -49,7 +53,7 @@ def parked(folder: Path, start: str, vehicle: str = "hatchback", duration_s: flo
 
 
 def modes(bundle: Path) -> set[Mode]:
-    return {Mode(int(mode)) for mode in open_bundle(bundle).log.table().column("arbitration.mode")}
+    return {Mode(int(mode)) for mode in open_bundle(bundle).log.table(COLUMNS).column("arbitration.mode")}
 
 
 @pytest.mark.parametrize(
@@ -66,7 +70,7 @@ def test_a_car_that_stands_beside_the_lane_is_led_back(
     tmp_path: Path, vehicle: str, aside_m: float, turned_deg: float
 ) -> None:
     bundle = parked(tmp_path, f"{{x_m: 5.0, y_m: {aside_m}, yaw_deg: {turned_deg}}}", vehicle, 12.0)
-    table = open_bundle(bundle).log.table()
+    table = open_bundle(bundle).log.table(COLUMNS)
     course = Course(solve(OPEN, "open"))
     _, lateral = course.project_all(table.column("vehicle.x_m"), table.column("vehicle.y_m"), 5.0)
     print(f"measured: {vehicle} from {aside_m:g} m and {turned_deg:g} deg: {np.abs(lateral).max():.2f} m at most")
@@ -88,7 +92,7 @@ def test_too_far_from_the_course_there_are_no_commands_and_it_says_why(
     tmp_path: Path, capfd: pytest.CaptureFixture[str], start: str, said: str
 ) -> None:
     bundle = parked(tmp_path, start, duration_s=5.0)
-    table = open_bundle(bundle).log.table()
+    table = open_bundle(bundle).log.table(COLUMNS)
     assert modes(bundle) - {Mode.PARKED} == {Mode.MANUAL}
     assert Reason.REFUSED_NO_COMMAND in table.column("arbitration.refusal")
     assert table.column("vehicle.distance_m")[-1] < 0.05
@@ -97,7 +101,7 @@ def test_too_far_from_the_course_there_are_no_commands_and_it_says_why(
 
 def test_at_the_end_of_an_open_course_the_car_stands(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     bundle = parked(tmp_path, "{x_m: 0.0, y_m: 0.0}", duration_s=35.0)
-    table = open_bundle(bundle).log.table()
+    table = open_bundle(bundle).log.table(COLUMNS)
     course = Course(solve(OPEN, "open"))
     s_m, lateral = course.project_all(table.column("vehicle.x_m"), table.column("vehicle.y_m"), 0.0)
     speed, asked = table.column("vehicle.vx_mps"), table.column("ros.accel_mps2")

@@ -16,8 +16,13 @@ from tests.drives.test_traffic_obeyed import BY_ROS, LINK, PART
 from tests.paths import ROOT
 from tests.samples import Sample
 
-SEEDS, LONG_SEEDS = 2, 20
+SEEDS, LONG_SEEDS = 1, 20
 DRIVEN_S = 110
+COLUMNS = (
+    *("rules.red_light", "rules.collision", "rules.failing_to_yield", "vehicle.distance_m", "situation.signal_state"),
+    *(f"ahead.{name}" for name in ("traffic_lost", "approach", "signal_state", "signal_tick", "yield_m")),
+)
+"""All columns of a drive are 150 MB."""
 SUMO = "{vehicles: 30, pedestrians: 12}"
 
 
@@ -46,7 +51,7 @@ def test_nobody_is_touched_and_no_red_light_is_passed(tmp_path: Path, sample: Sa
 def judge(folder: Path) -> int:
     """Judge a drive, and return in how many ticks somebody had to be let pass."""
     bundle = open_bundle(folder)
-    table = bundle.log.table()
+    table = bundle.log.table(COLUMNS)
     assert bundle.manifest.summary["unanswered"] == 0
     assert not table.column("rules.red_light").any()
     assert not table.column("rules.collision").any()

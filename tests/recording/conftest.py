@@ -1,6 +1,7 @@
 import hashlib
 import json
 import struct
+from collections import deque
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -105,18 +106,22 @@ def log_with_acts(header: LogHeader, rows: list[np.ndarray], acts: dict[int, tup
 
 @pytest.fixture
 def rewrite_log() -> Callable[..., None]:
-    """Change one value of a log and make every CRC and chained hash in it right again, as a forger would."""
+    """Change one value of a log and make every CRC and chained hash in it right again, as a forger would.
+
+    Record by record: the whole log of a demo is more than a process of the tests should hold.
+    """
 
     def rewrite(path: Path, tick: int, column: str, value: float) -> None:
-        reader = LogReader(path)
-        parts, digest = [encode_header(reader.header)], START_OF_CHAIN
-        for record in reader:
-            row = record.vector.copy()
-            if record.tick == tick:
-                row[reader.header.columns.index(column)] = value
-            frame, digest = seal(digest, record.tick, row.tobytes())
-            parts.append(frame)
-        path.write_bytes(b"".join(parts))
+        reader, digest, forged = LogReader(path), START_OF_CHAIN, path.with_suffix(".forged")
+        with forged.open("wb") as file:
+            file.write(encode_header(reader.header))
+            for record in reader:
+                row = record.vector.copy()
+                if record.tick == tick:
+                    row[reader.header.columns.index(column)] = value
+                frame, digest = seal(digest, record.tick, row.tobytes())
+                file.write(frame)
+        forged.replace(path)
 
     return rewrite
 
@@ -128,9 +133,11 @@ def rewrite_checksums() -> Callable[[Path], None]:
     def rewrite(folder: Path) -> None:
         def change(manifest: dict[str, Any]) -> None:
             for name, entry in manifest["files"].items():
-                content = (folder / name).read_bytes()
-                entry.update(size_bytes=len(content), sha256=hashlib.sha256(content).hexdigest())
-            manifest["digest"] = [record.digest for record in LogReader(folder / "drive.log")][-1].hex()
+                with (folder / name).open("rb") as file:
+                    sha256 = hashlib.file_digest(file, "sha256").hexdigest()
+                entry.update(size_bytes=(folder / name).stat().st_size, sha256=sha256)
+            (last,) = deque(LogReader(folder / "drive.log"), maxlen=1)
+            manifest["digest"] = last.digest.hex()
 
         forge(folder, change)
 

@@ -8,7 +8,7 @@ import pytest
 
 from simconsole.evaluation.checks.scenario_check import check_scenario
 from simconsole.profiles.files import loader as profile_files
-from tests.drives.console import complaint, results, simconsole
+from tests.drives.console import complaint, results, simconsole, within
 from tests.drives.fixtures import Checked
 
 SHIPPED = sorted(path.stem for path in (profile_files.profiles_folder() / "scenarios").glob("*.yaml"))
@@ -131,10 +131,10 @@ def test_two_jobs_give_the_verdicts_of_one_and_a_junit_file(copied: Path, tmp_pa
 )
 def test_a_scenario_that_cannot_be_driven_is_one_line(copied: Path, before: str, after: str, message: str) -> None:
     path = alter(copied / f"{QUICK}.yaml", before, after)
-    assert message in complaint(simconsole("check", path))
+    assert message in complaint(within("check", path))
 
 
 def test_a_golden_that_is_none_is_one_line(copied: Path) -> None:
     golden = copied / "golden" / f"{QUICK}.csv"
     golden.write_text("tick,vehicle.x_m\n1,0.0\n")
-    assert f"{golden}: line 1: not a golden" in complaint(simconsole("check", copied / f"{QUICK}.yaml"))
+    assert f"{golden}: line 1: not a golden" in complaint(within("check", copied / f"{QUICK}.yaml"))

@@ -9,11 +9,11 @@ from gymnasium.vector import SyncVectorEnv
 
 from simconsole import Drive, DrivingEnvironment
 from tests.paths import ROOT
+from tests.samples import Sample
 
 OWN_CONTROLLER = ROOT / "examples" / "own_controller" / "own_controller.py"
 LANE_KEEPING = ROOT / "examples" / "lane_keeping" / "train.py"
 MOST_LINES = 25
-GENERATIONS = 8
 
 
 def test_an_own_controller_of_25_lines_drives_the_course() -> None:
@@ -26,19 +26,19 @@ def test_an_own_controller_of_25_lines_drives_the_course() -> None:
     assert abs(drive.column("own.lateral_m")[250:]).max() < 0.5
 
 
-def test_a_linear_law_learns_to_hold_the_lane(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_linear_law_learns_to_hold_the_lane(sample: Sample, capsys: pytest.CaptureFixture[str]) -> None:
     """Before learning it leaves the lane; after it, it holds places that it has not seen to the end."""
-    example = runpy.run_path(str(LANE_KEEPING))
+    example, generations = runpy.run_path(str(LANE_KEEPING)), sample.of(5, 8)
     learners = SyncVectorEnv([partial(DrivingEnvironment, **example["OPTIONS"])] * example["PLACES"])
     unseen = range(900, 900 + example["PLACES"])
     try:
         before = example["returns"](learners, np.zeros(8), unseen)
-        law = example["train"](learners, GENERATIONS)
+        law = example["train"](learners, generations)
         after = example["returns"](learners, law, unseen)
     finally:
         learners.close()
     means = [float(line.partition("mean return")[2].split(",")[0]) for line in capsys.readouterr().out.splitlines()]
-    assert len(means) == GENERATIONS
+    assert len(means) == generations
     assert means[-1] > 2.0 * max(means[0], 10.0)
     assert after.min() > 70.0  # of at most 120 m less what it takes to drive off: none has left the lane
     assert after.sum() > before.sum() + 100.0

@@ -4,7 +4,7 @@ import pytest
 
 from simconsole.evaluation.checks.scenario_check import check_scenario
 from simconsole.evaluation.sweep.plan import load_plan
-from tests.drives.console import complaint, results, simconsole
+from tests.drives.console import complaint, results, simconsole, within
 from tests.evaluation.openscenario.files import NOT_UNDERSTOOD, UNDERSTOOD, file_of, span
 
 
@@ -17,14 +17,14 @@ def test_a_file_is_imported_and_can_be_checked(tmp_path: Path) -> None:
     assert "driven as cubic" in done["notes"][1]
     assert (tmp_path / "cut_in.yaml").read_text().startswith("# Made by `simconsole scenario import` from cut_in.xosc")
     assert check_scenario(str(tmp_path / "cut_in.yaml"), update_golden=True).passed
-    assert "is there already" in complaint(simconsole(*words))
+    assert "is there already" in complaint(within(*words))
 
 
 def test_what_is_left_out_is_listed(tmp_path: Path) -> None:
     element, make = NOT_UNDERSTOOD["a goal"]
     path, out = tmp_path / "goal.xosc", tmp_path / "goal.yaml"
     path.write_bytes(make())
-    assert f"<{element}>: not understood" in complaint(simconsole("scenario", "import", path, "--out", out))
+    assert f"<{element}>: not understood" in complaint(within("scenario", "import", path, "--out", out))
     assert not out.exists()
     done = simconsole("scenario", "import", path, "--out", out, "--partly")
     assert f"left out: line 91: <{element}>: not understood" in done.stdout
@@ -46,11 +46,11 @@ def test_a_file_of_values_makes_a_scenario_for_each_and_their_sweep(tmp_path: Pa
     assert [task.source for task in plan.tasks] == ["slower-0", "slower-1"]
     acts = [task.scenario.actors[0].acts[0] for task in plan.tasks if task.scenario is not None]
     assert [act.speed_kmh for act in acts] == pytest.approx([7.2, 14.4])
-    assert "is there already" in complaint(simconsole(*words))
+    assert "is there already" in complaint(within(*words))
 
 
 def test_another_file_is_refused(tmp_path: Path) -> None:
-    assert "an OpenSCENARIO file, .xosc" in complaint(simconsole("scenario", "import", tmp_path / "a.xml"))
+    assert "an OpenSCENARIO file, .xosc" in complaint(within("scenario", "import", tmp_path / "a.xml"))
     (tmp_path / "a.xosc").write_text("<OpenDRIVE/>")
     assert "line 1: <OpenDRIVE>: value OpenDRIVE: <OpenSCENARIO>" in complaint(
         simconsole("scenario", "import", tmp_path / "a.xosc")

@@ -8,7 +8,7 @@ import yaml
 
 from simconsole.evaluation.sweep.results import RESULTS
 from simconsole.recording.bundles.bundle import open_bundle
-from tests.drives.console import complaint, results, simconsole
+from tests.drives.console import complaint, results, simconsole, within
 from tests.evaluation.sweep.plans import SCRIPT, SESSION, write_plan
 
 GRIP = {"environment.friction": [0.3, 1.0]}
@@ -65,12 +65,12 @@ def test_a_drive_that_cannot_be_driven_is_told_and_is_code_1(tmp_path: Path) -> 
 def test_a_scheduler_that_is_not_there_is_one_line(tmp_path: Path) -> None:
     plan = write_plan(tmp_path, values=GRIP)
     words = ("sweep", plan, "--engine", "dask", "--scheduler", "nonsense", "--out", tmp_path / "sweep")
-    assert "--scheduler: value nonsense:" in complaint(simconsole(*words))
+    assert "--scheduler: value nonsense:" in complaint(within(*words))
 
 
 def test_options_that_do_not_go_together_are_refused(tmp_path: Path) -> None:
     plan = write_plan(tmp_path, values=GRIP)
-    assert "--scheduler" in complaint(simconsole("sweep", plan, "--engine", "dask"))
-    assert "--scheduler" in complaint(simconsole("sweep", plan, "--scheduler", "tcp://127.0.0.1:1"))
-    assert "--drive: value 2: 0 to 1" in complaint(simconsole("sweep", plan, "--drive", 2))
-    assert "nowhere.yaml" in complaint(simconsole("sweep", tmp_path / "nowhere.yaml"))
+    assert "--scheduler" in complaint(within("sweep", plan, "--engine", "dask"))
+    assert "--scheduler" in complaint(within("sweep", plan, "--scheduler", "tcp://127.0.0.1:1"))
+    assert "--drive: value 2: 0 to 1" in complaint(within("sweep", plan, "--drive", 2))
+    assert "nowhere.yaml" in complaint(within("sweep", tmp_path / "nowhere.yaml"))
