@@ -117,8 +117,8 @@ def test_autonomy_ends_by_a_push_and_by_nothing_else(
     shipped: ForceFeedback, sample: Sample, record_property: Callable[[str, object], None]
 ) -> None:
     slowest_s = 0.0
-    some = draws(np.random.default_rng(sample.seed), sample.of(1, 200))
-    for number, draw in enumerate((*ENDS[:: sample.of(15, 1)], *some)):
+    some = draws(np.random.default_rng(sample.seed), sample.of(2, 200))
+    for number, draw in enumerate((*ENDS[:: sample.of(7, 1)], *some)):
         loop = Loop(wheel=(true_force(shipped, draw), found_force(shipped, draw)))
         loop.engage()
         for _ in loop.seconds(60.0):

@@ -3,6 +3,7 @@
 import contextlib
 import io
 import json
+import logging
 import os
 import signal
 import subprocess
@@ -38,11 +39,18 @@ def patient(patience_s: float, *arguments: object, **changes: str) -> "subproces
 
 
 def within(*arguments: object) -> "subprocess.CompletedProcess[str]":
-    """Run one command in this process, for what it refuses at once: no program has to start, and load all libraries."""
+    """Run one command in this process, for what it refuses at once: no program has to start, and load all libraries.
+
+    What is logged goes where a program's goes. A wrong command line raises `SystemExit`.
+    """
     out, err = io.StringIO(), io.StringIO()
-    texts = [*map(str, arguments)]
-    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-        code = main(texts)
+    texts, root = [*map(str, arguments)], logging.getLogger()
+    handlers, root.handlers[:] = root.handlers[:], [logging.StreamHandler(err)]
+    try:
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            code = main(texts)
+    finally:
+        root.handlers[:] = handlers
     return subprocess.CompletedProcess(texts, code, out.getvalue(), err.getvalue())
 
 

@@ -2,7 +2,7 @@
 
 From where road users were told to be and what lights were told to show (`world/rules/right_of_way.py`). The stop is
 decided as one for a light is; who steps out late is braked for as hard as it takes. A front that has come a little
-beyond the line meanwhile stops at once: nobody it owes anything passes that near to the line.
+beyond the line meanwhile stops at once, for the ways of others begin further on; one that is through goes on.
 """
 
 import math
@@ -10,7 +10,7 @@ from typing import Final
 
 from simconsole.drivers.autopilot.others import OLD_S
 from simconsole.drivers.path_tracker.signal_stops import GAP_M, GENTLE_MPS2, SignalStops, needed_mps2
-from simconsole.drivers.path_tracker.speed_profile import Stop
+from simconsole.drivers.path_tracker.speed_profile import Stop, stopping
 from simconsole.profiles.vehicle import CarProfile, VehicleProfile
 from simconsole.values.signals import FAR, SignalState
 from simconsole.world.roads.road_map import Array
@@ -21,6 +21,7 @@ from simconsole.world.world import World
 
 HARDEST_MPS2: Final = 6.0
 _MORE_MPS2: Final = 0.5
+_FASTER_MPS: Final = 0.3
 
 
 class Yields:
@@ -53,7 +54,10 @@ class Yields:
             return None
         stop_m = self._line_m - self._front_m - GAP_M
         needed = min(needed_mps2(stop_m - s_m, speed_mps), HARDEST_MPS2)
-        if needed > self._brake_mps2 + _MORE_MPS2:
+        too_fast = speed_mps > stopping(stop_m - s_m, self._brake_mps2)[0] + _FASTER_MPS
+        if (
+            needed > self._brake_mps2 + _MORE_MPS2 and too_fast
+        ):  # near the stop more is needed of a car that keeps to it
             self._brake_mps2 = needed
         return Stop(stop_m, self._brake_mps2)
 

@@ -1,11 +1,17 @@
-"""Driving at the planned speed: acceleration from plan and speed, never with more jerk than is comfortable."""
+"""Driving at the planned speed: acceleration from plan and speed; only an emergency brings more jerk than comfort."""
 
 import math
 from copy import copy
 from typing import Final, NamedTuple
 
 from simconsole.drivers.car_following import Following, following_mps2
-from simconsole.drivers.path_tracker.speed_profile import STOP_JERK_MPS3, Stop, plan_speed, stopping
+from simconsole.drivers.path_tracker.speed_profile import (
+    EMERGENCY_JERK_MPS3,
+    EMERGENCY_MPS2,
+    Stop,
+    plan_speed,
+    stopping,
+)
 from simconsole.drivers.path_tracker.tracker_settings import Comfort
 from simconsole.values.kernels import approach, clip
 from simconsole.world.route import Route
@@ -18,9 +24,6 @@ _CORRECTION_MPS2: Final = 0.4  # more than a stop on the way plans with
 _GAP_M: Final = 3.0
 _HEADWAY_S: Final = 1.5
 _HARDEST_MPS2: Final = 6.0
-_EMERGENCY_MPS2: Final = 3.0
-"""Who must brake harder than this brakes for an emergency: comfort no longer bounds the jerk."""
-_EMERGENCY_JERK_MPS3: Final = 20.0
 _ROLLS_MPS: Final = 0.5
 """Faster than this nobody creeps to the place where they stop: who is beyond it has driven past."""
 _LOOK_S: Final = 0.05
@@ -72,16 +75,15 @@ class SpeedControl:
             brake = self.stop.brake_mps2
             rising_s = 0.5 * max(self.accel_mps2 + brake, 0.0) / _jerk_mps3(brake)  # so much later the brake is there
             left_m = self.stop.s_m - s_m - speed_mps * rising_s
-            fade_mps3 = _EMERGENCY_JERK_MPS3 if brake > _EMERGENCY_MPS2 else STOP_JERK_MPS3
-            now = min(now, stopping(left_m, brake, fade_mps3))
-            ahead = min(ahead, stopping(left_m - lead_m, brake, fade_mps3))
+            now, ahead = min(now, stopping(left_m, brake)), min(ahead, stopping(left_m - lead_m, brake))
         target, planned = now[0], ahead[1]
         wanted = planned + _GAIN_1PS * (target - speed_mps)
-        most = self._comfort.brake_most_mps2
+        most, jerk_mps3 = self._comfort.brake_most_mps2, _JERK_MPS3
         if self.stop is not None:
             most = max(most, self.stop.brake_mps2 + _CORRECTION_MPS2)
             if s_m > self.stop.s_m and speed_mps > _ROLLS_MPS:
                 wanted = min(wanted, -_at_once_mps2(self.stop.brake_mps2, speed_mps))
+            jerk_mps3 = _jerk_mps3(self.stop.brake_mps2)
         wanted = clip(wanted, -most, self._comfort.accelerate_mps2)
         if self.advised_mps is not None and self.advised_mps < target:
             target = self.advised_mps
@@ -90,8 +92,8 @@ class SpeedControl:
             allowed = following_mps2(self.leader.gap_m, self.leader.speed_mps, speed_mps, self._following)
             if allowed < wanted:
                 wanted, target = allowed, clip(speed_mps + allowed / _GAIN_1PS, 0.0, target)
-        most_change = _jerk_mps3(-wanted) * self._period_s
-        before, self.accel_mps2 = self.accel_mps2, approach(self.accel_mps2, wanted, most_change)
+                jerk_mps3 = max(jerk_mps3, _jerk_mps3(-wanted))
+        before, self.accel_mps2 = self.accel_mps2, approach(self.accel_mps2, wanted, jerk_mps3 * self._period_s)
         return Longitudinal(target, self.accel_mps2, (self.accel_mps2 - before) / self._period_s)
 
     def ahead(self, s_m: float, speed_mps: float, count: int, every_s: float) -> list[float]:
@@ -116,7 +118,7 @@ class SpeedControl:
 
 def _jerk_mps3(brake_mps2: float) -> float:
     """Return how fast a deceleration may change."""
-    return _EMERGENCY_JERK_MPS3 if brake_mps2 > _EMERGENCY_MPS2 else _JERK_MPS3
+    return EMERGENCY_JERK_MPS3 if brake_mps2 > EMERGENCY_MPS2 else _JERK_MPS3
 
 
 def _at_once_mps2(brake_mps2: float, speed_mps: float) -> float:

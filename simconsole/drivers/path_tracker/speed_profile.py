@@ -18,8 +18,10 @@ Array = NDArray[np.float64]
 STEP_M: Final = 0.5
 _PASSES: Final = 2  # the second lap starts at the speed with which the first ended
 _STOP_MPS2: Final = 1.2
-STOP_JERK_MPS3: Final = 0.8
-"""With which a deceleration fades out at the end of a stop."""
+_STOP_JERK_MPS3: Final = 0.8
+EMERGENCY_MPS2: Final = 3.0
+"""Who must brake harder than this brakes for an emergency: comfort no longer bounds the jerk."""
+EMERGENCY_JERK_MPS3: Final = 20.0
 _SLOWEST_MPS: Final = 1.0  # that is smoothed over time; slower than this the car is about to stop
 _STOPPED_S: Final = 0.3
 """So long before a stop the deceleration fades no more: what is asked of a standing car is to brake."""
@@ -61,19 +63,21 @@ class Stop(NamedTuple):
     brake_mps2: float
 
 
-def stopping(left_m: float, brake_mps2: float = _STOP_MPS2, fade_mps3: float = STOP_JERK_MPS3) -> tuple[float, float]:
+def stopping(left_m: float, brake_mps2: float = _STOP_MPS2) -> tuple[float, float]:
     """Return (speed in m/s, acceleration in m/s2) with `left_m` to go to a stop.
 
-    A deceleration of `brake_mps2` that fades out with `fade_mps3` in the last part: s = j t^3 / 6 before the end.
+    A deceleration of `brake_mps2` that fades out in the last part with constant jerk: s = j t^3 / 6 before the end. In
+    an emergency that part is short.
     """
     if left_m <= 0.0:
-        return 0.0, -STOP_JERK_MPS3 * _STOPPED_S
+        return 0.0, -_STOP_JERK_MPS3 * _STOPPED_S
+    fade_mps3 = EMERGENCY_JERK_MPS3 if brake_mps2 > EMERGENCY_MPS2 else _STOP_JERK_MPS3
     fade_s = brake_mps2 / fade_mps3
     fade_m, fade_mps = fade_mps3 * fade_s**3 / 6.0, 0.5 * brake_mps2 * fade_s
     if left_m >= fade_m:
         return math.sqrt(fade_mps**2 + 2.0 * brake_mps2 * (left_m - fade_m)), -brake_mps2
     left_s = math.cbrt(6.0 * left_m / fade_mps3)
-    return 0.5 * fade_mps3 * left_s**2, -max(fade_mps3 * left_s, STOP_JERK_MPS3 * _STOPPED_S)
+    return 0.5 * fade_mps3 * left_s**2, -max(fade_mps3 * left_s, _STOP_JERK_MPS3 * _STOPPED_S)
 
 
 def plan_speed(course: Route, comfort: Comfort, top_mps: float | None = None) -> SpeedProfile:

@@ -2,10 +2,11 @@
 
 Seen from where others are and how they move; where they want to go only their indicators tell. Who is on a crossing, or
 steps onto it, is let pass until they are beyond the vehicle's lane; who stands at its edge while its own light tells
-people to wait does so (SUMO's people wait there, ours further back). A vehicle with the right of way is let pass if it
-comes within the critical headway (`conflicts.CRITICAL_S`), unless it is on a roundabout and indicates that it leaves
-it; who is inside the junction is let out. Vehicles that have stood for a while before their line let others go, and at
-a traffic light those, too, that have stood inside the junction and indicate to the left: they wait for who comes.
+people to wait does so (SUMO's people wait there, ours further back), and who stands before the lane of a vehicle whose
+front is at the crossing already. A vehicle with the right of way is let pass if it comes within the critical headway
+(`conflicts.CRITICAL_S`), unless it is on a roundabout and indicates that it leaves it; who is inside the junction is
+let out. Vehicles that have stood for a while before their line let others go, and at a traffic light those, too, that
+have stood inside the junction and indicate to the left: they wait for who comes.
 
 Who turns to the left and has passed the junction's line still lets oncoming vehicles pass, and waits inside for that,
 before their ways; until they have to stop for their own light, whatever the own one shows by then.
@@ -40,6 +41,7 @@ _STANDS_MPS: Final = 0.3
 _STEPS_MPS: Final = 0.3
 _AT_KERB_M: Final = 0.06  # nearer to the carriageway than who waits
 _EDGE_M: Final = 0.3  # less of a crossing nobody has walked who waits before it
+_THERE_M: Final = 0.5  # nearer to a crossing a front keeps people from its lane
 _CLEAR_M: Final = 0.5
 _BESIDE_M: Final = 1.5  # further from a lane's centre line nobody is on it
 _ALIGNED: Final = 0.6
@@ -132,12 +134,15 @@ def _who_goes_first(
     """Return in how many seconds who goes first is in the way, FAR: nobody is hindered; None: nobody goes first."""
     on_foot = users[:, 1] == RoadUserKind.PEDESTRIAN
     if isinstance(duty, Foot):
-        return 0.0 if len(users) and _somebody_crosses(duty, users[on_foot], light) else None
+        return 0.0 if len(users) and _somebody_crosses(duty, left_m, users[on_foot], light) else None
     return _vehicle_first(duty, left_m, speed_mps, users[~on_foot], standing[~on_foot], light)
 
 
-def _somebody_crosses(foot: Foot, people: Array, light: LightOf) -> bool:
-    """Return whether somebody is on a crossing, or steps onto it, and has not passed the vehicle's lane."""
+def _somebody_crosses(foot: Foot, left_m: float, people: Array, light: LightOf) -> bool:
+    """Return whether somebody is on a crossing, or steps onto it, and has not passed the vehicle's lane.
+
+    Who stands on it before that lane waits for a vehicle whose front is there already.
+    """
     (x, y), (to_x, to_y) = foot.crossing.line[[0, -1]].tolist()
     length = float(np.hypot(to_x - x, to_y - y))
     cosine, sine = (to_x - x) / length, (to_y - y) / length
@@ -150,6 +155,8 @@ def _somebody_crosses(foot: Foot, people: Array, light: LightOf) -> bool:
     on = (walked > -0.25) & (walked < length)
     if foot.crossing.signal >= 0 and light(foot.crossing.signal, foot.crossing.link) in _STOPS:
         on &= (walked > _EDGE_M) | (people[:, 5] > _STEPS_MPS)
+    if left_m < _THERE_M:
+        on &= (people[:, 5] > _STEPS_MPS) | (walked > np.where(forth > 0.0, foot.low_m, length - foot.high_m))
     there = (aside < 0.5 * foot.crossing.width_m + _CLEAR_M) & (walked < passed)
     return bool((there & (steps | on)).any())
 

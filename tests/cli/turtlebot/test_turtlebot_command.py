@@ -82,14 +82,11 @@ def test_everything_is_written_and_replays(runs: list[Run]) -> None:
         assert replay_bundle(folder).hashes_equal
 
 
-def test_one_seed_gives_one_drive(runs: list[Run], sample: Sample, tmp_path: Path) -> None:
-    """A second whole run is one of the long ones; two drives of a robot: tests/drives/test_robot_mission.py."""
+def test_one_seed_gives_one_drive(runs: list[Run], tmp_path: Path) -> None:
     first = runs[0]
     objective, _, seed = first.folder.name.partition("-")
-    assert set(first.said["digests"]) == {robot["name"] for robot in first.said["robots"]}
-    for number in range(sample.of(0, 1)):
-        again = Run(tmp_path / str(number), int(seed), objective)
-        assert again.said["digests"] == first.said["digests"]
+    again = Run(tmp_path, int(seed), objective)
+    assert again.said["digests"] == first.said["digests"]
 
 
 def test_a_session_without_platforms_is_refused() -> None:

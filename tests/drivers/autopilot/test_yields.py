@@ -1,17 +1,20 @@
 """Where the autopilot stops for others, from what it was told."""
 
+import numpy as np
 import pytest
 
 from simconsole.drivers.autopilot.others import OLD_S
 from simconsole.drivers.autopilot.yields import HARDEST_MPS2, Yields, yields
 from simconsole.drivers.path_tracker.signal_stops import GAP_M, GENTLE_MPS2
+from simconsole.drivers.path_tracker.speed_control import SpeedControl
+from simconsole.drivers.path_tracker.tracker_settings import COMFORT
 from simconsole.profiles.files.vehicle_files import load_vehicle
 from simconsole.profiles.files.world_files import load_world
 from simconsole.world.kinds.worlds import open_world
 from simconsole.world.traffic.road_users import NOBODY
 from tests.world.rules.test_right_of_way import crossing, somebody, urban
 
-FRONT_M = 3.0
+FRONT_M, PERIOD_S = 3.0, 0.02
 
 
 def test_stop_lies_before_the_crossing_while_somebody_is_on_it() -> None:
@@ -55,3 +58,25 @@ def test_a_front_that_comes_a_little_beyond_the_line_stops_and_one_that_is_throu
     assert others.stop(foot.line_m - FRONT_M - 4.0, 4.0, 10.0) is not None
     others.see(somebody(foot, 0.7), 10.1)
     assert (others.stop(foot.line_m - FRONT_M + beyond_m, 1.0, 10.1) is not None) == stops
+
+
+@pytest.mark.parametrize(
+    ("told_m", "speed_mps", "hardest_mps2"), [(60.0, 8.0, 1.6), (16.0, 8.0, 2.8), (12.0, 8.0, 4.0), (8.0, 5.0, 2.8)]
+)
+def test_the_brake_is_never_released_on_the_way_to_a_stop_and_no_harder_than_it_takes(
+    told_m: float, speed_mps: float, hardest_mps2: float
+) -> None:
+    """Somebody is seen on the crossing when the car's front is `told_m` before the line."""
+    foot, others = crossing(), Yields(urban(), FRONT_M, None)
+    control = SpeedControl(open_world(load_world("urban_signals")).route, COMFORT, PERIOD_S)
+    s_m, time_s, asked = foot.line_m - FRONT_M - told_m, 10.0, [0.0]
+    while speed_mps > 0.05:
+        others.see(somebody(foot, 0.5), time_s)
+        control.stop = others.stop(s_m, speed_mps, time_s)
+        asked.append(control.step(s_m, speed_mps).accel_mps2)
+        speed_mps += asked[-1] * PERIOD_S
+        s_m, time_s = s_m + speed_mps * PERIOD_S, time_s + PERIOD_S
+    assert 0.0 < foot.line_m - FRONT_M - s_m < 2.0 * GAP_M
+    hardest = int(np.argmin(asked))
+    assert -hardest_mps2 <= asked[hardest]
+    assert (np.diff(asked[: hardest + 1]) < 0.05).all()

@@ -251,3 +251,20 @@ def test_red_light_is_no_duty_to_yield() -> None:
     car[0, 2:5] = way.x_m[inside], way.y_m[inside], math.atan2(float(way.sine[inside]), float(way.cosine[inside]))
     assert RightOfWay(urban()).owed(before(entry.line_m, 1.0, 0.0), car, dark).yield_m < FAR
     assert RightOfWay(urban()).owed(before(entry.line_m, 1.0, 0.0), car, red) == NOTHING_OWED
+
+
+def test_who_stands_before_the_lane_of_a_vehicle_at_the_crossing_lets_it_go() -> None:
+    """They wait for it, as our own people do; else both would wait for ever. Who walks, or is in the lane, does not."""
+    foot = crossing()
+    before_lane, in_lane = foot.low_m - 0.3, 0.5 * (foot.low_m + foot.high_m)
+
+    def is_owed(along_m: float, speed_mps: float, left_m: float) -> bool:
+        watch = RightOfWay(urban())
+        watch.owed(before(foot.line_m, 20.0), somebody(foot, along_m, 1.0), dark)
+        own = before(foot.line_m, left_m, 0.0, time_s=1.0)
+        return watch.owed(own, somebody(foot, along_m, speed_mps), dark).yield_m < FAR
+
+    assert not is_owed(before_lane, 0.0, -0.5)
+    assert is_owed(before_lane, 0.0, 1.0)
+    assert is_owed(before_lane, 1.0, -0.5)
+    assert is_owed(in_lane, 0.0, -0.5)
