@@ -61,7 +61,7 @@ def test_a_front_that_comes_a_little_beyond_the_line_stops_and_one_that_is_throu
 
 
 @pytest.mark.parametrize(
-    ("told_m", "speed_mps", "hardest_mps2"), [(60.0, 8.0, 1.6), (16.0, 8.0, 2.8), (12.0, 8.0, 4.0), (8.0, 5.0, 2.8)]
+    ("told_m", "speed_mps", "hardest_mps2"), [(60.0, 8.0, 2.0), (16.0, 8.0, 3.2), (12.0, 8.0, 3.6), (8.0, 5.0, 3.0)]
 )
 def test_the_brake_is_never_released_on_the_way_to_a_stop_and_no_harder_than_it_takes(
     told_m: float, speed_mps: float, hardest_mps2: float
