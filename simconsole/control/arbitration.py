@@ -35,7 +35,7 @@ from simconsole.control.requests.tick_context import TickContext
 from simconsole.control.shared import shared_authority
 from simconsole.values.kernels import kernel
 from simconsole.values.signals import ArbiterMemory, Arbitration, Link, Mode, Notice, Request
-from simconsole.values.signals.hands import wilful_torque
+from simconsole.values.validity import wilful_torque
 
 
 class Observed(NamedTuple):

@@ -215,6 +215,14 @@ def test_the_trade_is_remembered_in_shared_alone(now: TickContext) -> None:
     assert arbitrate(elsewhere)[0].shared_trade == 1.0
 
 
+def test_a_torque_that_was_held_at_engagement_or_is_the_hands_mass_pulls_nobody_out(now: TickContext) -> None:
+    driver = now.driver._replace(hand_wheel_rad=0.2, hand_wheel_radps=0.0)
+    pulling = now._replace(driver=driver, human_nm=now.settings.steering_override_nm + 0.1)
+    assert arbitrate(pulling)[0].steering_ticks == 6.0
+    assert arbitrate(pulling._replace(carried_nm=0.2))[0].steering_ticks == 0.0
+    assert arbitrate(pulling._replace(hand_wheel_radps2=-20.0))[0].steering_ticks == 0.0
+
+
 def test_a_refusal_is_shown_for_its_time(now: TickContext) -> None:
     refused = now.before._replace(refusal=float(Reason.REFUSED_MOVING))
     last = now.settings.refusal_ticks - 1.0

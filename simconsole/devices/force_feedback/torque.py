@@ -25,8 +25,7 @@ from simconsole.values.signals import (
     WheelMemory,
     WheelTorque,
 )
-from simconsole.values.signals.hands import wilful_torque
-from simconsole.values.validity import is_trusted
+from simconsole.values.validity import is_trusted, wilful_torque
 
 _STANDING: Final = int(Event.LOOP_STALL | Event.PAUSE)
 
