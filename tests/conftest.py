@@ -7,10 +7,13 @@ and writes docs/long-run.md.
 """
 
 import datetime
+import gc
 import os
 import signal
+import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
+from functools import partial
 from typing import Final
 
 import pytest
@@ -56,6 +59,35 @@ def pytest_xdist_auto_num_workers() -> int:
 def pytest_configure(config: pytest.Config) -> None:
     """Settle the seed of the run: processes that run tests get the options as they are after this."""
     draw_seed(config)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_setupnodes(config: pytest.Config) -> None:
+    """Compile kernels while the processes that run tests start and collect them."""
+    compiling = subprocess.Popen(
+        [sys.executable, "-m", "tests.kernels"],
+        cwd=config.rootpath,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    config.add_cleanup(partial(_ended, compiling))
+
+
+def _ended(compiling: "subprocess.Popen[bytes]") -> None:
+    """Leave no process behind."""
+    compiling.kill()
+    compiling.wait()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """Collect no garbage while there is none, and none of the tests ever: there are thousands, and they stay."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
