@@ -1,5 +1,6 @@
 """Random drives through arbitration and gate: inputs of every kind, and one kernel that runs them."""
 
+from collections.abc import Iterable
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -33,6 +34,7 @@ from simconsole.values.signals import (
 Rows = NDArray[np.float64]
 SEED: Final = 20_260_302
 STEPS: Final = 350_000
+PIECE: Final = 50_000
 DRIVER: Final = Part(DriverInput)
 ROS: Final = Part(RemoteCommand, DRIVER.stop)
 VEHICLE: Final = Part(VehicleState, ROS.stop)
@@ -56,6 +58,8 @@ COLUMNS: Final = (
     *DriverInput._fields, *RemoteCommand._fields, *VehicleState._fields, "events", "ecu_events",
     *(f"ecu_{name}" for name in RemoteCommand._fields), "human_nm",
 )  # fmt: skip
+KEPT: Final = ("hand_wheel_rad", "pressed", "edges", "age_ticks", "vx_mps", "events", "ecu_events", "ecu_age_ticks")
+"""What a drive keeps of its inputs: all of them would be as large as its outputs."""
 KEEP_SPEED: Final = 12345.0
 """In the column of vx: the speed follows from the pedals. Anything else is what the vehicle reports."""
 
@@ -72,10 +76,11 @@ OFTEN: Final = {
 def drive(inputs: Row, outputs: Row, row: Row, before: Row, vehicle_row: Row, tick_s: float) -> None:
     """Run rows of driver, remote, vehicle and event through arbitration and gate; speed follows the pedals.
 
-    Kernels make and copy no arrays: `before`, all zeros, and `vehicle_row` are for what passes from row to row.
+    Kernels make and copy no arrays: `before`, all zeros for the first piece of a drive, and `vehicle_row` are for what
+    passes from row to row.
     """
     s = read(row, SETTINGS)
-    speed = 0.0
+    speed = before[SPEED_AT]
     ros_age_before = ecu_age_before = NEVER_TICKS
     for index in range(inputs.shape[0]):
         given = inputs[index]
@@ -124,6 +129,7 @@ def drive(inputs: Row, outputs: Row, row: Row, before: Row, vehicle_row: Row, ti
         speed = speed + (4.0 * command.throttle - 9.0 * command.brake - 0.2) * tick_s
         if speed < 0.0:
             speed = 0.0
+    before[SPEED_AT] = speed
 
 
 class Drive(NamedTuple):
@@ -131,11 +137,11 @@ class Drive(NamedTuple):
 
     settings: ControlSettings
     tick_s: float
-    inputs: Rows
+    inputs: dict[str, Rows]
     outputs: Rows
 
     def given(self, name: str) -> Rows:
-        return self.inputs[:, COLUMNS.index(name)]
+        return self.inputs[name]
 
     def of(self, record: type[tuple[float, ...]], name: str) -> Rows:
         part = next(part for part in (MEMORY, ARBITRATION, COMMAND) if part.record is record)
@@ -143,7 +149,7 @@ class Drive(NamedTuple):
 
     @property
     def events(self) -> NDArray[np.int64]:
-        return self.inputs[:, EVENT_AT].astype(np.int64)
+        return self.given("events").astype(np.int64)
 
     @property
     def heard(self) -> NDArray[np.int64]:
@@ -239,17 +245,26 @@ def random_commands(rng: np.random.Generator, steps: int, stale_ticks: float) ->
 def random_drive(tick_hz: int, seed: int, steps: int, execution: object = compiled, **profile: object) -> Drive:
     print(f"seed {seed}")
     s = settings(ControlProfile(**profile), 15.0, 0.6, 2.6, tick_hz)  # type: ignore[arg-type]
-    return driven(random_inputs(np.random.default_rng(seed), steps, s.stale_ticks), s, tick_hz, execution)
+    rng = np.random.default_rng(seed)
+    pieces = (random_inputs(rng, min(PIECE, steps - first), s.stale_ticks) for first in range(0, steps, PIECE))
+    return driven(pieces, steps, s, tick_hz, execution)
 
 
-def driven(inputs: Rows, s: ControlSettings, tick_hz: int, execution: object = compiled) -> Drive:
-    outputs = np.empty((len(inputs), OUTPUT_WIDTH))
-    before, vehicle_row = np.zeros(OUTPUT_WIDTH), np.zeros(EVENT_AT - VX + VX_SEEN)
-    execution(drive)(inputs, outputs, np.array(s), before, vehicle_row, 1.0 / tick_hz)  # type: ignore[operator]
-    return Drive(s, 1.0 / tick_hz, inputs, outputs)
+def driven(pieces: Iterable[Rows], steps: int, s: ControlSettings, tick_hz: int, execution: object = compiled) -> Drive:
+    """Return the drive that all pieces are, one after the other; of their inputs only what somebody looks at."""
+    outputs, kept = np.empty((steps, OUTPUT_WIDTH)), np.empty((len(KEPT), steps))
+    before, vehicle_row, row = np.zeros(OUTPUT_WIDTH), np.zeros(EVENT_AT - VX + VX_SEEN), np.array(s)
+    columns, done = [COLUMNS.index(name) for name in KEPT], 0
+    for piece in pieces:
+        now = slice(done, done + len(piece))
+        execution(drive)(piece, outputs[now], row, before, vehicle_row, 1.0 / tick_hz)  # type: ignore[operator]
+        kept[:, now] = piece[:, columns].T
+        done = now.stop
+    assert done == steps
+    return Drive(s, 1.0 / tick_hz, dict(zip(KEPT, kept, strict=True)), outputs)
 
 
-def calm_inputs(ticks: int) -> Rows:
+def calm_inputs(ticks: int, first: int = 0) -> Rows:
     """Return a person who does nothing, a car that can drive, and a controller on the ROS side that commands 10 m/s."""
     inputs = np.zeros((ticks, INPUT_WIDTH))
     values = dict.fromkeys(("wheel_validity", "throttle_validity", "brake_validity"), float(Validity.LIVE))
@@ -257,5 +272,5 @@ def calm_inputs(ticks: int) -> Rows:
     values |= {"coast_accel_mps2": -0.2, "full_throttle_accel_mps2": 3.8, "full_brake_accel_mps2": -9.2}
     for name, value in {**values, "ecu_age_ticks": NEVER_TICKS}.items():
         inputs[:, COLUMNS.index(name)] = value
-    inputs[:, COLUMNS.index("sequence")] = np.arange(1.0, ticks + 1.0)
+    inputs[:, COLUMNS.index("sequence")] = first + np.arange(1.0, ticks + 1.0)
     return inputs

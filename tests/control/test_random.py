@@ -38,18 +38,47 @@ from tests.control.random_drives import (
     ECU_LINK,
     KEEP_SPEED,
     MEMORY,
+    PIECE,
     ROS,
     ROS_LINK,
     SEED,
     SPEED_AT,
     STEPS,
     VEHICLE,
-    VX,
     Drive,
     calm_inputs,
     driven,
     random_drive,
 )
+
+
+def test_hands_resting_on_a_still_wheel_are_no_takeover_in_an_hour() -> None:
+    """They come within a degree of the threshold again and again.
+
+    The hour with a motor that turns the wheel under the hands: tests/devices/test_closed_loop.py.
+    """
+    tick_hz, engage = 50, 25
+    s, steps = settings(ControlProfile(), 15.0, 0.6, 2.6, tick_hz), engage + 3600 * tick_hz
+    slow, tremor = 2.0 * np.pi * 0.05, 2.0 * np.pi * 1.5
+
+    def resting(first: int) -> NDArray[np.float64]:
+        inputs = calm_inputs(min(PIECE, steps - first), first)
+        time_s = (first + np.arange(len(inputs)) - engage) / tick_hz
+        angle_deg = 5.0 * np.sin(slow * time_s) + 2.0 * np.sin(tremor * time_s)
+        rate_degps = 5.0 * slow * np.cos(slow * time_s) + 2.0 * tremor * np.cos(tremor * time_s)
+        inputs[:, COLUMNS.index("hand_wheel_rad")] = np.radians(angle_deg)
+        inputs[:, COLUMNS.index("hand_wheel_radps")] = np.radians(rate_degps)
+        if first == 0:
+            inputs[engage, COLUMNS.index("events")] = float(Event.REQUEST_AUTONOMOUS)
+        return inputs
+
+    hour = driven((resting(first) for first in range(0, steps, PIECE)), steps, s, tick_hz)
+    assert (hour.modes[:engage] == Mode.MANUAL).all()
+    assert (hour.modes[engage:] == Mode.AUTONOMOUS).all()
+    assert len(hour.modes) - engage == 3600 * tick_hz
+    moved_rad = np.abs(hour.given("hand_wheel_rad")).max()
+    assert s.steering_override_rad - np.radians(1.1) < moved_rad < s.steering_override_rad
+    assert hour.outputs[-1, SPEED_AT] == pytest.approx(10.0, abs=0.05)
 
 
 @pytest.fixture(scope="module", params=[50, 250, 1000])
@@ -115,7 +144,7 @@ def test_never_more_than_one_rate_step(long_drive: Drive) -> None:
     angle = long_drive.of(VehicleCommand, "road_wheel_rad")
     assert (np.abs(np.diff(angle)) <= wheel_step + tiny).all()
     speed = long_drive.outputs[1:, SPEED_AT]
-    smooth = (jerk_step > 0.0) & (speed > 0.1) & (long_drive.inputs[1:, VX] == KEEP_SPEED)
+    smooth = (jerk_step > 0.0) & (speed > 0.1) & (long_drive.given("vx_mps")[1:] == KEEP_SPEED)
     assert smooth.sum() > 1_000
     jerk = np.abs(np.diff(angle)) * speed**2 / (long_drive.settings.wheelbase_m * np.cos(angle[:-1]) ** 2)
     assert (jerk[smooth] <= jerk_step[smooth] + 1e-9).all()
@@ -234,26 +263,3 @@ def test_plain_and_compiled_give_equal_bits(tick_hz: int) -> None:
     drives = [random_drive(tick_hz, SEED - tick_hz, 6000, execution) for execution in (plain, compiled)]
     assert not difference(drives[0].outputs, drives[1].outputs)
     assert len(set(drives[0].modes)) >= 6
-
-
-def test_hands_resting_on_a_still_wheel_are_no_takeover_in_an_hour() -> None:
-    """They come within a degree of the threshold again and again.
-
-    The hour with a motor that turns the wheel under the hands: tests/devices/test_closed_loop.py.
-    """
-    tick_hz, engage = 50, 25
-    s = settings(ControlProfile(), 15.0, 0.6, 2.6, tick_hz)
-    inputs = calm_inputs(engage + 3600 * tick_hz)
-    time_s = (np.arange(len(inputs)) - engage) / tick_hz
-    slow, tremor = 2.0 * np.pi * 0.05, 2.0 * np.pi * 1.5
-    inputs[:, COLUMNS.index("hand_wheel_rad")] = np.radians(5.0 * np.sin(slow * time_s) + 2.0 * np.sin(tremor * time_s))
-    rate_degps = 5.0 * slow * np.cos(slow * time_s) + 2.0 * tremor * np.cos(tremor * time_s)
-    inputs[:, COLUMNS.index("hand_wheel_radps")] = np.radians(rate_degps)
-    inputs[engage, COLUMNS.index("events")] = float(Event.REQUEST_AUTONOMOUS)
-    hour = driven(inputs, s, tick_hz)
-    assert (hour.modes[:engage] == Mode.MANUAL).all()
-    assert (hour.modes[engage:] == Mode.AUTONOMOUS).all()
-    assert len(hour.modes) - engage == 3600 * tick_hz
-    moved_rad = np.abs(hour.given("hand_wheel_rad")).max()
-    assert s.steering_override_rad - np.radians(1.1) < moved_rad < s.steering_override_rad
-    assert hour.outputs[-1, SPEED_AT] == pytest.approx(10.0, abs=0.05)

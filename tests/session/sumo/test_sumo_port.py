@@ -11,14 +11,18 @@ from simconsole.session.sumo.sumo_memory import ERROR_AT, How, SumoMemory, signa
 from simconsole.session.sumo.sumo_port import SumoPort
 from simconsole.values.errors import ProfileError
 from simconsole.values.signals import FAR
+from simconsole.world.roads.road_map import RoadMap
 from simconsole.world.roads.running import Running
 from simconsole.world.sumo_traffic import engines
 from simconsole.world.traffic.road_users import FIELDS, RECORD_WIDTH, to_record
 from tests.world.nets import CITY, generated_map
 from tests.world.sumo_traffic.on_sumo import box
 
-MAP = generated_map(*CITY)
 PERIOD_MS, TIMEOUT_S = 40, 0.4
+
+
+def city() -> RoadMap:
+    return generated_map(*CITY)
 
 
 class Beside:
@@ -26,15 +30,15 @@ class Beside:
 
     def __init__(self, folder: Path) -> None:
         profile = TrafficProfile(period_ms=PERIOD_MS, sumo=SumoProfile(timeout_s=TIMEOUT_S))
-        self.port = SumoPort(profile, MAP, 100, folder, box(1.0))
+        self.port = SumoPort(profile, city(), 100, folder, box(1.0))
         self.memory = SumoMemory.open(folder)
         self.signals = 0
 
     def answer(self, count: int, letters: str | None = None) -> None:
         if letters is not None:
             self.signals += 1
-            now = {one.id: Running(letters * 20, (), 0, FAR) for one in MAP.signals}
-            self.memory.signals.write(self.signals, signals_within(now, signal_bytes(MAP)))
+            now = {one.id: Running(letters * 20, (), 0, FAR) for one in city().signals}
+            self.memory.signals.write(self.signals, signals_within(now, signal_bytes(city())))
         values = np.zeros(RECORD_WIDTH + 1)
         values[:RECORD_WIDTH] = to_record(np.ones((count, FIELDS)))
         values[ERROR_AT] = 0.5
