@@ -22,7 +22,7 @@ from tests.samples import Sample
 from tests.vehicle.commonroad import BMW, DURATION_S, SAMPLE_S, Input, Path, drive_multi_body, drive_single_track
 from tests.vehicle.driving import LEVEL, ORIGIN
 
-CASES = 200
+CASES = 100
 WHEELBASE_M = BMW.a + BMW.b
 STATE = CAR.slice
 STEER_AT = LAYOUT.command.start  # VehicleCommand begins with road_wheel_rad
@@ -91,7 +91,7 @@ def passes(shares: list[float]) -> bool:
 @pytest.fixture(scope="module")
 def cases(module_sample: Sample) -> list[Case]:
     rng = random.Random(module_sample.seed)
-    count = module_sample.of(CASES, 10 * CASES)
+    count = module_sample.of(CASES, 20 * CASES)
     found: list[Case] = []
     while len(found) < count:
         speed = rng.uniform(5.0, 30.0)

@@ -29,7 +29,7 @@ from simconsole.world.rules.speed_advice import (
 from tests.samples import Measured, Sample
 
 LIMIT_MPS = 50.0 / 3.6
-SHORT, FULL = 80, 1000
+SHORT, FULL = 40, 1000
 PERIOD_S, MESSAGES_S = 0.02, 0.1
 SCANNED = 60
 SETTLED_S, BESIDE_MPS = 0.5, 0.3

@@ -15,7 +15,7 @@ from tests.patience import PATIENCE_S
 from tests.samples import Sample
 from tests.world.nets import CITY, STRAIGHT, generated
 
-BATCH = 30
+BATCH = 10
 CPU_S = 2.0
 MEMORY_MB = 500.0
 
@@ -26,7 +26,7 @@ def changed(old: str, new: str) -> bytes:
 
 
 def test_mutated_maps_are_refused_by_one_line_or_loaded(sample: Sample, tmp_path: Path) -> None:
-    count = sample.of(30, 300)
+    count = sample.of(10, 300)
     path = tmp_path / "city.net.xml"
     path.write_bytes(generated(*CITY))
     counts, most_cpu_s, memory_mb = Counter[str](), 0.0, 0.0
