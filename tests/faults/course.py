@@ -1,7 +1,7 @@
 """Drives over the urban course with the path tracker in the loop: whole, and from any state of an earlier drive."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from functools import cache, cached_property
 from typing import Any, NamedTuple
@@ -47,8 +47,11 @@ SESSION = "schema: 1\nenvironment: {world: urban}\nscenario: {vehicle: hatchback
 ENGAGE_TICK = 2 * HZ
 BEYOND_M = 1.0
 """More than the car goes in a period of the controller."""
+REST_S = 2.0
+"""Who stands for so long is at rest: nothing new comes in such a drive."""
 LANE_M = 3.5
 CAR_M = 1.8
+STANDING_MPS = 0.1
 ASTRAY_M = 0.2
 PLACES = {"straight": 150.0, "bend": 330.0, "roundabout": 1010.0}
 """Where on the course a fault comes, in m from its start."""
@@ -183,6 +186,17 @@ class LoopTracker:
         return self._command._replace(age_ticks=float(tick - self._received)), events
 
 
+class Rest:
+    """Whether a drive is over: the car stands, and has for a while."""
+
+    def __init__(self) -> None:
+        self._ticks = 0
+
+    def __call__(self, snapshot: Snapshot) -> bool:
+        self._ticks = self._ticks + 1 if abs(snapshot.vehicle.vx_mps) < STANDING_MPS else 0
+        return self._ticks >= REST_S * HZ
+
+
 class Driven(NamedTuple):
     """A drive that is over."""
 
@@ -222,7 +236,7 @@ class Driven(NamedTuple):
 
     @property
     def at_rest(self) -> bool:
-        return bool(abs(self.column("vehicle.vx_mps")[-1]) < 0.1)
+        return bool(abs(self.column("vehicle.vx_mps")[-1]) < STANDING_MPS)
 
 
 class Circuit:
@@ -251,9 +265,9 @@ class Circuit:
         pace: Pace | None = None,
         outputs: Sequence[Output] = (),
         controller: LoopTracker | None = None,
-        until_m: float = math.inf,
+        finished: Callable[[Snapshot], bool] = lambda _: False,
     ) -> Driven:
-        """Drive on from a state, for so long or until the car has come so far in all."""
+        """Drive on from a state, for so long or until it is `finished`."""
         scenario = msgspec.structs.replace(self.resolved.session.scenario, faults=tuple(faults))
         session = msgspec.structs.replace(self.resolved.session, scenario=scenario)
         resolved = msgspec.structs.replace(self.resolved, session=session)
@@ -275,13 +289,14 @@ class Circuit:
             tracker.publish(start)
         isolated_components = isolated(with_faults(components, resolved, HZ), UnpacedPacer)
         ticks = round(seconds * HZ)
-        run(self.console, state, isolated_components, ticks, lambda shot: shot.vehicle.distance_m > until_m)
+        run(self.console, state, isolated_components, ticks, finished)
         return Driven(recorder.vectors, state.tick + 1, self.console.columns, self.course)
 
     def state_at(self, distance_m: float) -> ConsoleState:
         """The state in which a drive over the course has come this far: a row is the whole state."""
         if distance_m not in self._states:
-            driven = self.drive(self.start, 300.0, until_m=distance_m + BEYOND_M)
+            beyond_m = distance_m + BEYOND_M
+            driven = self.drive(self.start, 300.0, finished=lambda shot: shot.vehicle.distance_m > beyond_m)
             came = driven.column("vehicle.distance_m")
             index = int(np.flatnonzero(came >= distance_m)[0]) // PERIOD_TICKS * PERIOD_TICKS + PERIOD_TICKS - 1
             self._states[distance_m] = ConsoleState(index + 1, driven.vectors[index].copy())
