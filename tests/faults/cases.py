@@ -16,7 +16,7 @@ from simconsole.profiles.faults import Fault, fault_label
 from simconsole.values.labels import mode_label, reason_label
 from simconsole.values.signals import Mode, Reason
 from simconsole.values.state_vector import Snapshot
-from tests.faults.course import AUTOPILOT, BY_HAND, BY_HAND_ALONE, HZ, PLACES, WATCHED, Crew, Driven, circuit
+from tests.faults.course import AUTOPILOT, BY_HAND, BY_HAND_ALONE, HZ, PLACES, WATCHED, Crew, Driven, Rest, circuit
 
 SECONDS: Final = 20.0
 KEPT: Final = (
@@ -97,7 +97,7 @@ class Measured(NamedTuple):
 
 
 def drive(case: Case, place: str, crew: Crew | None = None) -> Measured:
-    """Drive 20 s from the saved state of a place, the fault after one second; each drive is driven once."""
+    """Drive 20 s from the saved state of a place, or until the car is at rest, the fault after one second; only once."""
     return _driven(CASES.index(case), place, crew or case.crew)
 
 
@@ -107,7 +107,7 @@ def _driven(index: int, place: str, crew: Crew) -> Measured:
     track = circuit()
     state = track.state_at(PLACES[place])
     fault = case.made(Snapshot(state.tick, HZ, state.vector).t_s + AFTER_S)
-    driven = track.drive(state, SECONDS, [fault], crew)
+    driven = track.drive(state, SECONDS, [fault], crew, finished=Rest())
     began = int(np.flatnonzero(driven.column("events.faults"))[0])
     mode = driven.column("arbitration.mode")
     changed = np.flatnonzero(mode[began:] != mode[began - 1])
@@ -139,9 +139,10 @@ the most of the three places; 0.85 m are still in the lane. A scenario's `faults
 |---|---|---|---|---|---|---|---|---|
 """
 _END = """
-The same kinds in whole drives of the program over a real WebSocket: `pytest tests/faults/test_whole_drives.py`, N04
-with a TCP connection that is really half open. Robots that follow velocity commands: `pytest
-tests/faults/test_robots.py`; 0.35 s after the reaction at the latest both wheels of a TurtleBot3 stand, and stay.
+The same kinds in whole drives of the program over a real WebSocket: `pytest --long tests/faults/test_whole_drives.py`
+(one for each answer without `--long`), N04 with a TCP connection that is really half open. Robots that follow velocity
+commands: `pytest tests/faults/test_robots.py`; 0.35 s after the reaction at the latest both wheels of a TurtleBot3
+stand, and stay.
 
 R06 is a command that cannot be meant at the speed: more than 10 m/s2 of lateral acceleration. One that steers wrong by
 less is a limit, not a fault that is recognised: the gate lets it come with 5 m/s2, 7 m/s3 and 1 rad/s at most, and a

@@ -1,6 +1,6 @@
 """Whole drives over a real WebSocket, each with a fault: they end as docs/faults.md says, and tell why.
 
-`pytest tests/faults/test_whole_drives.py` drives them all; the autopilot is a process of its own that speaks rosbridge.
+`pytest --long tests/faults/test_whole_drives.py` drives them all; the autopilot is a process of its own that speaks rosbridge.
 """
 
 import json
@@ -25,7 +25,6 @@ from simconsole.values.signals import Event, Mode, Reason
 from simconsole.values.state_vector import INPUT_WIDTH, Snapshot
 from tests.bits import difference
 from tests.bridge.networks import go_deaf
-from tests.drives.console import simconsole
 from tests.drives.controllers import Controller, command
 from tests.faults.course import CAR_M, HZ, LANE_M, circuit
 from tests.patience import PATIENCE_S
@@ -88,6 +87,11 @@ ENDINGS = {
     "raises, part: ros": LEFT,
     "raises, part: outputs": Ending(None),
 }
+ONE_OF_EACH = (
+    *("silent", "disconnected", "refused", "late_commands, by_ms: 150", "unplug, device: wheel"),
+    *("stall, stall_ms: 500", "raises, part: ros", "raises, part: outputs"),
+)
+"""What `make test` drives: for each way in which the console answers, one kind; test_course.py drives all of them."""
 
 
 class Rested:
@@ -101,7 +105,13 @@ class Rested:
         return self._ticks >= REST_TICKS
 
 
-@pytest.mark.parametrize("kind", ENDINGS)
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """Give each drive a test of its own."""
+    if "kind" in metafunc.fixturenames:
+        metafunc.parametrize("kind", ENDINGS if metafunc.config.option.long else ONE_OF_EACH)
+
+
+@pytest.mark.usefixtures("sample")
 def test_a_whole_drive_with_a_fault_ends_as_promised_and_its_report_says_why(kind: str, tmp_path: Path) -> None:
     ending = ENDINGS[kind]
     session = SESSION.replace("KIND", kind).replace("DURATION", str(ending.duration_s))
@@ -132,8 +142,7 @@ def test_a_whole_drive_with_a_fault_ends_as_promised_and_its_report_says_why(kin
 def test_a_row_of_a_whole_drive_is_a_state_to_drive_on_from(tmp_path: Path) -> None:
     (tmp_path / "session.yaml").write_text(SESSION.replace("KIND", "silent").replace("DURATION", "10"))
     (tmp_path / "person.yaml").write_text(PERSON)
-    done = simconsole("drive", tmp_path / "session.yaml", "--out", tmp_path / "bundle", "--json")
-    assert done.returncode == 0, done.stderr
+    drive(resolve(load_session(str(tmp_path / "session.yaml"))), tmp_path / "bundle")
     table = open_bundle(tmp_path / "bundle").log.table()
     console, state = state_at(tmp_path / "bundle", 1000)
     row = state.vector
