@@ -27,6 +27,7 @@ outputs:
   bridge: {{port: {port}}}
   hud: {hud}
   scene: {scene}
+  report: {report}
 devices: {{driver: "script:asks.yaml"}}
 mode: {{pacing: {pacing}, tick_hz: 250}}
 """
@@ -37,7 +38,13 @@ HUD, SCENE = "{width_px: 320, height_px: 240, rate_hz: 10}", "{rate_hz: 5, flush
 
 
 def write_session(
-    folder: Path, port: int, *, autopilot: bool = True, pacing: str = "realtime", workers: bool = True
+    folder: Path,
+    port: int,
+    *,
+    autopilot: bool = True,
+    pacing: str = "realtime",
+    workers: bool = True,
+    report: bool = True,
 ) -> Path:
     """A drive whose person asks for autonomy twice a second."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -48,6 +55,7 @@ def write_session(
         port=port,
         hud=HUD if workers and pacing == "realtime" else "null",
         scene=SCENE if workers else "null",
+        report=str(report).lower(),
         pacing=pacing,
     )
     path = folder / "session.yaml"
