@@ -143,7 +143,7 @@ def flooded(raw: Raw, fragments: int) -> int | None:
 @pytest.mark.parametrize("transport", ["websockets", "picows"])
 def test_n13_many_such_messages_take_no_memory(transport: str, sample: Sample, measured: Measured) -> None:
     """Kept whole, each would be 40 MB of Python's bytes."""
-    rounds, resident = sample.of(20, 200), 0
+    rounds, resident = sample.of(12, 200), 0
     codes: list[int | None] = []
     with serving_apart(transport) as server:
         for number in range(rounds):

@@ -190,7 +190,7 @@ def test_p08_a_drive_of_eight_hours_takes_no_more_memory_than_its_first_minutes(
     tmp_path: Path, sample: Sample, measured: Measured
 ) -> None:
     """The program in lockstep with its autopilot and four clients, as fast as it goes; its log is cut meanwhile."""
-    warm, minutes = sample.of(1, 10), sample.of(5, 8 * 60)
+    warm, minutes = sample.of(1, 10), sample.of(3, 8 * 60)
     port, bundle = free_port(), tmp_path / "bundle"
     (tmp_path / "person.yaml").write_text(PERSON)
     (tmp_path / "session.yaml").write_text(SOAK.replace("PORT", str(port)))

@@ -45,7 +45,7 @@ MIB = 1 << 20
 def test_the_scene_of_a_long_drive_takes_no_more_memory_than_that_of_a_short_one(
     tmp_path: Path, sample: Sample, measured: Measured
 ) -> None:
-    minutes = sample.of(WARM_MIN + 15, 8 * 60)
+    minutes = sample.of(WARM_MIN + 9, 8 * 60)
     np.save(tmp_path / "rows.npy", rows(7500))
     command = [sys.executable, "-c", FEEDER, str(tmp_path), str(tmp_path / "scene.rrd"), str(minutes)]
     done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT)
