@@ -97,7 +97,7 @@ class Measured(NamedTuple):
 
 
 def drive(case: Case, place: str, crew: Crew | None = None) -> Measured:
-    """Drive 20 s from the saved state of a place, or until the car is at rest, the fault after one second; only once."""
+    """Drive 20 s from the saved state of a place, or until the car rests, the fault after one second; only once."""
     return _driven(CASES.index(case), place, crew or case.crew)
 
 

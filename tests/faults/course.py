@@ -1,6 +1,5 @@
 """Drives over the urban course with the path tracker in the loop: whole, and from any state of an earlier drive."""
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from functools import cache, cached_property

@@ -14,7 +14,7 @@ from simconsole.session.lifecycle import drive
 from simconsole.values.errors import RecordingError
 from simconsole.values.signals import Event
 from simconsole.values.state_vector import Snapshot
-from tests.drives.console import results, simconsole
+from tests.drives.console import results, simconsole, within
 from tests.faults.disks import DISKS, SIZE_BYTES, Disk, memory
 from tests.faults.recorded import TICKS, session, unfinish
 from tests.patience import pause
@@ -156,7 +156,7 @@ def test_p01_from_the_command_line_every_command_tells_it(script: Path, tmp_path
         assert not list(bundle.glob("*.new"))
         (place / "filler").unlink()
         for command, *more in (["replay"], ["verify"], ["report"], ["view", "--no-open"], ["compare", bundle]):
-            looked = simconsole(command, bundle, *more, "--json")
+            looked = within(command, bundle, *more, "--json")
             assert looked.returncode == 1, (command, looked.stdout, looked.stderr)
             assert told["recording_failure"] in results(looked)["problems"], command
             assert told["recording_failure"] in looked.stderr.splitlines(), command

@@ -23,7 +23,7 @@ from simconsole.recording.scan import Scan
 from simconsole.session.lifecycle import drive
 from simconsole.values.errors import RecordingError
 from simconsole.values.state_vector import Snapshot
-from tests.drives.console import results, simconsole
+from tests.drives.console import results, within
 from tests.faults.recorded import HZ, session, unfinish
 from tests.patience import PATIENCE_S, wait_until
 from tests.samples import Measured, Sample
@@ -264,14 +264,14 @@ def test_p04_from_the_command_line_damage_fails_and_a_torn_tail_is_named(unfinis
     content = path.read_bytes()
     try:
         path.write_bytes(content[:-9])
-        torn = simconsole("replay", unfinished, "--json")
+        torn = within("replay", unfinished, "--json")
         assert torn.returncode == 0
         remark = results(torn)["remarks"][1]
         assert remark.endswith("as a drive that was killed leaves it")
         assert remark in torn.stderr.splitlines()
         path.write_bytes(content[:-9] + bytes([content[-9] ^ 1]) + content[-8:])
         for command, *more in (["replay"], ["compare", unfinished]):
-            damaged = simconsole(command, unfinished, *more, "--json")
+            damaged = within(command, unfinished, *more, "--json")
             assert damaged.returncode == 1
             assert all("damaged, wrong checksum" in problem for problem in results(damaged)["problems"])
             assert results(damaged)["problems"][0] in damaged.stderr.splitlines()

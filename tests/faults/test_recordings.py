@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.drives.console import complaint, results, simconsole, within
+from tests.drives.console import complaint, results, within
 from tests.faults.recorded import unfinish
 from tests.manifests import forge
 from tests.recording.conftest import change_header, rewrite_checksums
@@ -64,10 +64,10 @@ def test_f05_drive_that_was_killed_can_still_be_replayed(copy: Path) -> None:
     log = copy / "drive.log"
     with log.open("r+b") as file:
         file.truncate(log.stat().st_size - 100)
-    done = simconsole("replay", copy, "--json")
+    done = within("replay", copy, "--json")
     assert done.returncode == 0, done.stdout + done.stderr
     assert results(done)["ticks"] == 749
-    checked = simconsole("verify", copy)
+    checked = within("verify", copy)
     assert checked.returncode == 1
     assert "the drive was not finished" in checked.stdout
 

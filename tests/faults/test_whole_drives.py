@@ -1,6 +1,7 @@
 """Whole drives over a real WebSocket, each with a fault: they end as docs/faults.md says, and tell why.
 
-`pytest --long tests/faults/test_whole_drives.py` drives them all; the autopilot is a process of its own that speaks rosbridge.
+`pytest --long tests/faults/test_whole_drives.py` drives them all; the autopilot is a process of its own that speaks
+rosbridge.
 """
 
 import json
