@@ -245,7 +245,7 @@ def test_memory_does_not_grow_with_the_drive(
     tmp_path: Path, header: LogHeader, sample: Sample, record_property: Callable[[str, object], None]
 ) -> None:
     """Of a drive, and of one four times as long: nearly all columns vary, and none is a copy."""
-    columns, blocks = tuple(f"platform.{index}_m" for index in range(40)), sample.of(6, 40)
+    columns, blocks = tuple(f"platform.{index}_m" for index in range(40)), sample.of(4, 40)
     stream = (vector_stream(columns, 2),)
     peaks = []
     for times in (1, 4):
@@ -269,7 +269,7 @@ def test_kill_9_at_any_moment_leaves_a_whole_bundle(
 
     The bundle opens, verifies and holds every byte; the next call ends what was begun.
     """
-    generator, kills, forms = random.Random(sample.seed), sample.of(12, 50), set[str]()
+    generator, kills, forms = random.Random(sample.seed), sample.of(8, 50), set[str]()
     whole = (short / LOG).read_bytes()
     packed = Path(shutil.copytree(short, tmp_path / "packed"))
     pack(packed)
