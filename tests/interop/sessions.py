@@ -1,4 +1,4 @@
-"""A session in which whoever answers the odometry drives a minute, as fast as it goes."""
+"""A session in which whoever answers the odometry drives, as fast as it goes."""
 
 from pathlib import Path
 
@@ -7,7 +7,7 @@ schema: 1
 title: Driven from outside
 scenario:
   vehicle: hatchback
-  duration_s: 60
+  duration_s: {seconds}
 features:
   control:
     person_required: false
@@ -27,8 +27,8 @@ mode:
 """
 
 
-def lockstep_session(folder: Path, port: int, ros2: bool = False) -> str:
+def lockstep_session(folder: Path, port: int, seconds: int, ros2: bool = False) -> str:
     """Write the session's profile; return its path."""
     path = folder / "session.yaml"
-    path.write_text(SESSION.format(port=port, ros2="{}" if ros2 else "null"))
+    path.write_text(SESSION.format(port=port, seconds=seconds, ros2="{}" if ros2 else "null"))
     return str(path)

@@ -1,10 +1,13 @@
 """rosapi says what there is in a real graph, and does to it what it says."""
 
 import signal
-from typing import Any
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+import pytest
 
 from tests.interop.programs import Client, client
-from tests.interop.puppets import puppet, served
+from tests.interop.puppets import Puppet, Served, puppet, served
 from tests.interop.ros2 import domain, needs_ros2
 from tests.patience import wait_until
 
@@ -16,9 +19,25 @@ def ask(web: Client, service: str, /, **args: Any) -> Any:
     return web.hear(lambda heard: heard.get("id") == service)
 
 
-def test_nodes_topics_and_parameters_of_the_graph() -> None:
+class Graph(NamedTuple):
+    """A console in a graph with one node."""
+
+    around: Mapping[str, str]
+    console: Served
+    talker: Puppet
+
+
+@pytest.fixture(scope="module")
+def graph() -> Iterator[Graph]:
+    """The graph of these tests; the first one finds nobody else in it."""
     around = domain()
-    with served(around) as console, puppet(around, "talker") as node, client(console.url) as web:
+    with served(around) as console, puppet(around, "talker") as talker:
+        yield Graph(around, console, talker)
+
+
+def test_nodes_topics_and_parameters_of_the_graph(graph: Graph) -> None:
+    node = graph.talker
+    with client(graph.console.url) as web:
         node.do("declare", name="rate", value=3)
         node.do("publish", name="/chatter", data="hello")
         node.do("serve", name="/flip")
@@ -55,9 +74,9 @@ def test_nodes_topics_and_parameters_of_the_graph() -> None:
         assert values[0]["integer_value"] == 5
 
 
-def test_what_is_not_relayed_is_named() -> None:
-    around = domain()
-    with served(around) as console, puppet(around) as node, client(console.url) as web:
+def test_what_is_not_relayed_is_named(graph: Graph) -> None:
+    console, node = graph.console, graph.talker
+    with client(console.url) as web:
         unrelayed = wait_until(lambda: ask(web, "/rosapi/unrelayed")["values"]["names"], "what is not relayed")
         assert "/tf" in unrelayed
         assert "/odom" not in unrelayed
@@ -66,14 +85,8 @@ def test_what_is_not_relayed_is_named() -> None:
         assert node.hear(lambda said: said.get("heard") == "/console/mode")["data"] == "PARKED"
 
 
-def test_a_node_that_does_not_answer_costs_the_names_of_its_own_parameters_only() -> None:
-    around = domain()
-    with (
-        served(around) as console,
-        puppet(around, "talker"),
-        puppet(around, "stopped") as stopped,
-        client(console.url) as web,
-    ):
+def test_a_node_that_does_not_answer_costs_the_names_of_its_own_parameters_only(graph: Graph) -> None:
+    with puppet(graph.around, "stopped") as stopped, client(graph.console.url) as web:
 
         def names() -> set[str]:
             found = ask(web, "/rosapi/get_param_names")["values"]["names"]

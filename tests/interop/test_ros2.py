@@ -13,6 +13,7 @@ from tests.interop.ros2 import PYTHON, domain, needs_ros2
 from tests.interop.sessions import lockstep_session
 from tests.paths import ROOT
 from tests.patience import PATIENCE_S
+from tests.samples import Sample
 
 pytestmark = needs_ros2
 
@@ -20,7 +21,8 @@ FIBONACCI = "test_msgs/action/Fibonacci"
 SUCCEEDED, CANCELED = 4, 5
 
 
-def test_an_rclpy_node_drives_for_a_minute(tmp_path: Path, record_property: Callable[[str, object], None]) -> None:
+def test_an_rclpy_node_drives(tmp_path: Path, sample: Sample, record_property: Callable[[str, object], None]) -> None:
+    seconds = sample.of(30, 60)
     bundle = tmp_path / "bundle"
     around = domain()
     words = [
@@ -28,25 +30,28 @@ def test_an_rclpy_node_drives_for_a_minute(tmp_path: Path, record_property: Call
         "-m",
         "simconsole",
         "drive",
-        lockstep_session(tmp_path, 0, ros2=True),
+        lockstep_session(tmp_path, 0, seconds, ros2=True),
         "--out",
         str(bundle),
         "--json",
     ]
-    with program(around, *words) as drive, program(around, PYTHON, str(HERE / "rclpy_driver.py"), "60") as driver:
+    with (
+        program(around, *words) as drive,
+        program(around, PYTHON, str(HERE / "rclpy_driver.py"), str(seconds)) as driver,
+    ):
         told, complaint = driver.communicate(timeout=PATIENCE_S)
         assert driver.returncode == 0, complaint
         output, complaint = drive.communicate(timeout=PATIENCE_S)
         assert drive.returncode == 0, complaint
     results, seen = json.loads(output.splitlines()[-1]), json.loads(told)
-    assert (results["unanswered"], results["exchanges"]) == (0, 3000)
-    assert seen["answers"] == 3000
-    assert results["duration_s"] == pytest.approx(60.0, abs=0.1)
-    assert results["distance_m"] > 350.0
-    assert seen["x_m"] > 350.0
+    assert (results["unanswered"], results["exchanges"]) == (0, 50 * seconds)
+    assert seen["answers"] == 50 * seconds
+    assert results["duration_s"] == pytest.approx(seconds, abs=0.1)
+    assert results["distance_m"] > 8.0 * seconds - 130.0  # at 8 m/s, but for the start
+    assert seen["x_m"] > 8.0 * seconds - 130.0
     assert 2.5 < seen["y_m"] < 3.5  # it steered to 3, from 0
     assert main(["replay", str(bundle)]) == 0
-    record_property("rclpy in lockstep", f"60 s driven in {seen['wall_s']:.1f} s, 50 Hz control over DDS")
+    record_property("rclpy in lockstep", f"{seconds} s driven in {seen['wall_s']:.1f} s, 50 Hz control over DDS")
 
 
 @pytest.fixture(scope="module")
