@@ -42,18 +42,18 @@ outputs: {hud: null, scene: null, report: false, bridge: BRIDGE}
 devices: {driver: "none"}
 mode: {pacing: realtime, tick_hz: 100}
 """
-SIXTY = "{vehicles: 60, radius_m: 1500, timeout_s: 0.5, backend: BACKEND}"
+THIRTY = "{vehicles: 30, radius_m: 1500, timeout_s: 0.5, backend: BACKEND}"
 
 
-def session(folder: Path, sumo: str, duration_s: float = 6.0, bridge: str = "null", start: str = "{x_m: 0}") -> Path:
+def session(folder: Path, sumo: str, duration_s: float, bridge: str = "null", start: str = "{x_m: 0}") -> Path:
     path = folder / "session.yaml"
     text = SESSION.replace("SUMO", sumo).replace("DURATION", f"{duration_s:g}").replace("BRIDGE", bridge)
     path.write_text(text.replace("START", start))
     return path
 
 
-def driven(folder: Path, sumo: str, watch: Callable[[Snapshot], bool] | None = None) -> DriveResult:
-    return drive(resolve(load_session(str(session(folder, sumo)))), folder / "bundle", watch)
+def driven(folder: Path, sumo: str, duration_s: float, watch: Callable[[Snapshot], bool] | None = None) -> DriveResult:
+    return drive(resolve(load_session(str(session(folder, sumo, duration_s)))), folder / "bundle", watch)
 
 
 def worker() -> int:
@@ -70,7 +70,7 @@ def child(process: int) -> int:
 
 @pytest.mark.parametrize("backend", ["libsumo", "traci"])
 def test_a_paced_drive_has_sumos_traffic_and_replays_without(tmp_path: Path, backend: str) -> None:
-    result = driven(tmp_path, SIXTY.replace("BACKEND", backend))
+    result = driven(tmp_path, THIRTY.replace("BACKEND", backend), 6.0)
     bundle = open_bundle(result.folder)
     steps = list(recorded_road_users(bundle.log))
     assert len(steps) > 100
@@ -101,8 +101,8 @@ def test_the_drive_goes_on_without_a_sumo_that_is_gone_or_hangs(
             os.kill(worker() if whom == "worker" else child(worker()), getattr(signal, name))
         return False
 
-    result = driven(tmp_path, SIXTY.replace("BACKEND", backend), watch)
-    assert result.ticks == 6 * HZ
+    result = driven(tmp_path, THIRTY.replace("BACKEND", backend), 4.0, watch)
+    assert result.ticks == 4 * HZ
     bundle = open_bundle(result.folder)
     lost = bundle.log.table().column("ahead.traffic_lost")
     first = int(np.flatnonzero(lost)[0])
