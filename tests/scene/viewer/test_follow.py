@@ -3,6 +3,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from simconsole.scene.viewer.live_file import HEAD
 from tests.paths import ROOT
@@ -67,56 +68,64 @@ def follow_apart(folder: Path, ending: str) -> tuple[int, Path]:
     return done.returncode, path
 
 
-def test_a_live_drive_is_recorded_whole(tmp_path: Path) -> None:
-    code, path = follow_apart(tmp_path, "stop")
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The scene of a drive that came to its end. Read only."""
+    code, path = follow_apart(tmp_path_factory.mktemp("whole"), "stop")
     assert code == 0
-    found = contents(path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def killed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What was written of the same drive when the scene was killed in it. Put back what a test changes."""
+    code, path = follow_apart(tmp_path_factory.mktemp("killed"), "die")
+    assert code == -9
+    return path
+
+
+def test_a_live_drive_is_recorded_whole(whole: Path) -> None:
+    found = contents(whole)
     assert set(found) >= WORLD | DRIVE
     assert found["/world/ego"] == 600
     assert found["/lanes/mode"] == 5 + 1
     assert found["/log"] == 7
 
 
-def test_a_killed_scene_leaves_what_it_had_written(tmp_path: Path) -> None:
-    code, path = follow_apart(tmp_path, "die")
-    assert code == -9
-    printed = rerun_rrd("print", str(path))
+def test_a_killed_scene_leaves_what_it_had_written(killed: Path) -> None:
+    printed = rerun_rrd("print", str(killed))
     assert printed.returncode == 0
     assert "/world/road/surface" in printed.stdout
 
 
-def test_a_live_drive_is_one_stream_without_an_end(tmp_path: Path) -> None:
+def test_a_live_drive_is_one_stream_without_an_end(whole: Path) -> None:
     """Whoever follows the file reads on; the index of scene.rrd stands at its end."""
-    code, path = follow_apart(tmp_path, "stop")
-    assert code == 0
-    content = path.read_bytes()
+    content = whole.read_bytes()
     assert content.startswith(HEAD)
     assert content.count(HEAD + b"FOOT") == 0
-    verified = rerun_rrd("verify", str(path))
+    verified = rerun_rrd("verify", str(whole))
     assert "1 errors" in verified.stderr
     assert "Missing RRD footer" in verified.stdout + verified.stderr
 
 
-def test_a_scene_that_was_restarted_goes_on_in_the_same_file(tmp_path: Path) -> None:
-    code, path = follow_apart(tmp_path, "die")
-    assert code == -9
-    before, killed = contents(path), path.read_bytes()
-    code, path = follow_apart(tmp_path, "stop")
-    assert code == 0
-    assert path.read_bytes().startswith(killed)
-    found = contents(path)
+def test_a_scene_that_was_restarted_goes_on_in_the_same_file(killed: Path) -> None:
+    before, content = contents(killed), killed.read_bytes()
+    try:
+        code, path = follow_apart(killed.parent, "stop")
+        assert code == 0
+        assert path.read_bytes().startswith(content)
+        found = contents(path)
+    finally:
+        killed.write_bytes(content)
     assert found["/world/ego"] == before["/world/ego"] + 600
     assert found["/world/road/surface"] == 2, "said again by the new process"
 
 
-def test_how_the_bridge_stands_is_a_lane_of_a_live_drive_that_has_one(tmp_path: Path) -> None:
+def test_how_the_bridge_stands_is_a_lane_of_a_live_drive_that_has_one(whole: Path, tmp_path: Path) -> None:
     code, path = follow_apart(tmp_path, "link")
     assert code == 0
     assert contents(path)["/health/bridge"] == 3 + 1
-    other = tmp_path / "other"
-    other.mkdir()
-    code, path = follow_apart(other, "stop")
-    assert contents(path)["/health/bridge"] == 1, "its colours only"
+    assert contents(whole)["/health/bridge"] == 1, "its colours only"
 
 
 def test_pictures_latencies_and_words_are_shown_at_the_newest_tick(tmp_path: Path) -> None:
