@@ -24,7 +24,7 @@ from simconsole.values.state_vector import LAYOUT, Snapshot
 from simconsole.world.arena.depth_camera import DepthCamera
 from simconsole.world.kinds.worlds import open_world
 from simconsole.world.traffic.road_users import NOBODY_AT_ALL
-from tests.drives.console import complaint, simconsole
+from tests.drives.console import complaint, within
 from tests.hud.gl.test_camera_picture import decoded
 from tests.interop.programs import Client, client, environment, program, wait_for_port
 from tests.ports import free_port
@@ -136,7 +136,7 @@ def test_pictures_of_a_drive_fit_the_road_by_their_camera_info(tmp_path: Path) -
 def test_where_nobody_could_draw_it_a_camera_is_refused(pacing: str, tmp_path: Path) -> None:
     path, _ = session(tmp_path)
     path.write_text(path.read_text().replace("realtime", pacing))
-    told = complaint(simconsole("drive", path, "--out", tmp_path / "bundle", "--for", 1))
+    told = complaint(within("drive", path, "--out", tmp_path / "bundle", "--for", 1))
     assert f"mode.pacing: value {pacing}: realtime, where outputs.bridge.camera is to be drawn" in told
 
 

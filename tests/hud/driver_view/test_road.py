@@ -64,7 +64,7 @@ def test_markings_of_a_road_map_lie_on_the_borders_of_its_lanes(name: str, sampl
     along = ends - starts
     squared = np.maximum((along**2).sum(axis=1), 1e-12)
     generator = np.random.Generator(np.random.PCG64(sample.seed))
-    for point in generator.choice(paint, sample.of(300, 3000), replace=False):
+    for point in generator.choice(paint, sample.of(100, 3000), replace=False):
         share = np.clip(((point - starts) * along).sum(axis=1) / squared, 0.0, 1.0)
         away = np.hypot(*(starts + share[:, None] * along - point).T)
         assert np.abs(away - 0.5 * LINE_M).min() < MARKING_M, point
