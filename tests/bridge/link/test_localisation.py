@@ -47,7 +47,7 @@ def test_each_error_has_its_own_size_and_nothing_else_changes(sample: Sample) ->
 
 def test_a_drift_is_slow_begins_at_nothing_and_reaches_its_size(sample: Sample) -> None:
     errors = LocalisationProfile(position_drift_m=0.5, yaw_drift_deg=1.0, drift_time_s=10.0)
-    seen = measured(LinkProfile(seed=sample.seed, localisation=errors), range(0, 1_000_000, 25))
+    seen = measured(LinkProfile(seed=sample.seed, localisation=errors), range(0, sample.of(300_000, 1_000_000), 25))
     x, yaw = seen[:, 0], seen[:, VehicleState._fields.index("yaw_rad")]
     assert x[0] == 0.0
     assert np.abs(np.diff(x)).max() <= 12 * 0.5 * 1.5 / 10.0 * 25 / TICK_HZ  # from one six-fold value to the other

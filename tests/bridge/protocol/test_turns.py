@@ -122,7 +122,7 @@ def test_inbox_says_when_no_more_should_be_read() -> None:
 
 def test_no_turn_does_more_than_its_share_and_nothing_is_lost(sample: Sample) -> None:
     chance = random.Random(sample.seed)
-    for _ in range(sample.of(20, 2000)):
+    for _ in range(sample.of(8, 2000)):
         handled, turns = Handled(), Turns(messages=8, num_bytes=2000)
         clients = [handled.inbox(str(number), chance.choice([0, 0, 300]), 5000.0) for number in range(5)]
         sent, now_ns = 0, 0
