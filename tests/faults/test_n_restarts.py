@@ -146,7 +146,7 @@ def test_n02_a_hundred_clients_that_come_and_go_leave_nothing_behind(
     transport: Any, sample: Sample, measured: Measured
 ) -> None:
     """The first forty warm it up."""
-    count = sample.of(150, 500)
+    count = sample.of(100, 500)
     command = [sys.executable, "-c", COME_AND_GO, transport, str(count)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr

@@ -100,8 +100,9 @@ def test_the_recording_holds_world_and_drive(recording: Path) -> None:
 def test_the_recording_brings_its_blueprint(recording: Path) -> None:
     printed = rerun_rrd("print", str(recording)).stdout
     assert "Blueprint" in printed
+    at_length = rerun_rrd("print", "-vvv", str(recording)).stdout
     for view in ("3D", "2D", "StateTimeline", "TimeSeries", "TextLog"):
-        assert view in rerun_rrd("print", "-vvv", str(recording)).stdout
+        assert view in at_length
 
 
 def test_a_drive_without_a_course_is_shown_too(tmp_path: Path) -> None:
