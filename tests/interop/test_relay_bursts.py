@@ -9,6 +9,7 @@ from tests.interop.programs import Client
 from tests.interop.puppets import Puppet, Served
 from tests.interop.ros2 import needs_ros2
 from tests.patience import pause, wait_until
+from tests.samples import Sample
 
 pytestmark = needs_ros2
 
@@ -32,10 +33,10 @@ def wait_for(web: Client, service: str, key: str, name: str) -> None:
     wait_until(known, f"{name} at the console")
 
 
-def test_calls_of_a_client(web: Client, node: Puppet) -> None:
+def test_calls_of_a_client(web: Client, node: Puppet, sample: Sample) -> None:
     node.do("serve", name="/ros/flip")
     wait_for(web, "services", "services", "/ros/flip")
-    for _ in range(5):
+    for _ in range(sample.of(2, 5)):
         for number in range(CALLS):
             web.say(op="call_service", id=number, service="/ros/flip", args={"data": bool(number % 2)})
             pause(1.0 / CALLS_HZ)
@@ -51,9 +52,9 @@ def test_calls_of_a_client_all_at_once(web: Client, node: Puppet) -> None:
     assert len(web.answers(CALLS)) == CALLS
 
 
-def test_calls_of_a_node(web: Client, node: Puppet) -> None:
+def test_calls_of_a_node(web: Client, node: Puppet, sample: Sample) -> None:
     web.say(op="advertise_service", service="/web/flip", type=FLIP)
-    for _ in range(5):
+    for _ in range(sample.of(2, 5)):
         node.do("call", name="/web/flip", count=CALLS, hz=CALLS_HZ)
         for _ in range(CALLS):
             call = web.hear(lambda heard: heard["op"] == "call_service")
@@ -63,11 +64,11 @@ def test_calls_of_a_node(web: Client, node: Puppet) -> None:
         assert [answers[number]["success"] for number in range(CALLS)] == [number % 2 == 1 for number in range(CALLS)]
 
 
-def test_goals_of_a_client(web: Client, node: Puppet) -> None:
+def test_goals_of_a_client(web: Client, node: Puppet, sample: Sample) -> None:
     node.do("act", name="/ros/fibonacci")
     wait_for(web, "action_servers", "action_servers", "/ros/fibonacci")
     goal = {"op": "send_action_goal", "action": "/ros/fibonacci", "action_type": FIBONACCI, "args": {"order": 3}}
-    for _ in range(3):
+    for _ in range(sample.of(1, 3)):
         for number in range(GOALS):
             web.say(**goal, id=number)
             pause(0.001)
@@ -78,9 +79,9 @@ def test_goals_of_a_client(web: Client, node: Puppet) -> None:
         assert {status for status, _ in ends.values()} == {SUCCEEDED}
 
 
-def test_goals_of_a_node(web: Client, node: Puppet) -> None:
+def test_goals_of_a_node(web: Client, node: Puppet, sample: Sample) -> None:
     web.say(op="advertise_action", action="/web/fibonacci", type=FIBONACCI)
-    for _ in range(3):
+    for _ in range(sample.of(1, 3)):
         node.do("pursue", name="/web/fibonacci", count=GOALS)
         for _ in range(GOALS):
             goal = web.hear(lambda heard: heard["op"] == "send_action_goal")
@@ -198,7 +199,7 @@ def test_a_burst_of_goals_that_are_cancelled(web: Client, node: Puppet, all_at_o
     assert set(ends.values()) == {CANCELED}
 
 
-def test_messages_of_a_node(web: Client, node: Puppet) -> None:
+def test_messages_of_a_node(web: Client, node: Puppet, sample: Sample) -> None:
     node.do("burst", name="/ros/burst", count=1)
     web.say(op="subscribe", topic="/ros/burst", type="std_msgs/String", queue_length=1000)
 
@@ -210,7 +211,9 @@ def test_messages_of_a_node(web: Client, node: Puppet) -> None:
             return False
 
     wait_until(arrives, "a message")
-    for count in range(90, 100):  # each another number: what comes late of the attempts before is passed over
+    for count in range(
+        100 - sample.of(4, 10), 100
+    ):  # each another number: what comes late of the attempts before is passed over
         node.do("burst", name="/ros/burst", count=count)
         seen: list[str] = []
         while seen[-count:] != [str(number) for number in range(count)]:
