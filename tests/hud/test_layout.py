@@ -1,5 +1,6 @@
 import subprocess
 import sys
+from functools import cache
 from itertools import combinations
 
 import pytest
@@ -16,10 +17,16 @@ from tests.hud.pictures import GERMAN, LARGE, SCREEN, SCREENS, asked, by_role, i
 every_screen = pytest.mark.parametrize("screen", [*SCREENS.values(), *LARGE.values()], ids=[*SCREENS, *LARGE])
 
 
+@cache
+def pictures(screen: Screen) -> list[list[DrawItem]]:
+    """What is drawn of every sample view, in both languages."""
+    return [list(layout(view, screen)) for view in [*sample_views(), *sample_views(GERMAN)]]
+
+
 @every_screen
 def test_nothing_is_within_five_percent_of_the_border(screen: Screen) -> None:
-    for view in [*sample_views(), *sample_views(GERMAN)]:
-        for item in layout(view, screen):
+    for items in pictures(screen):
+        for item in items:
             box = bounds(item)
             if item.role == "ground":
                 continue
@@ -32,8 +39,8 @@ def test_nothing_is_within_five_percent_of_the_border(screen: Screen) -> None:
 @every_screen
 def test_every_text_is_large_enough_for_the_seat(screen: Screen) -> None:
     check_screen(screen, "hud", GERMAN)
-    for view in [*sample_views(), *sample_views(GERMAN)]:
-        for item in texts(layout(view, screen)):
+    for items in pictures(screen):
+        for item in texts(items):
             assert item.arcmin in (16.0, 20.0, 60.0)
             assert item.cap_px / screen.px_per_arcmin >= item.arcmin
             if item.role == "speed" and item.text.isdigit():
@@ -47,8 +54,8 @@ def test_every_text_is_large_enough_for_the_seat(screen: Screen) -> None:
 
 @every_screen
 def test_no_two_texts_touch(screen: Screen) -> None:
-    for view in [*sample_views(), *sample_views(GERMAN)]:
-        placed = [(*bounds(item), item) for item in texts(layout(view, screen))]
+    for items in pictures(screen):
+        placed = [(*bounds(item), item) for item in texts(items)]
         for (x, y, w, h, one), (other_x, other_y, other_w, other_h, other) in combinations(placed, 2):
             beside = x + w <= other_x or other_x + other_w <= x
             assert beside or y + h <= other_y or other_y + other_h <= y, (one, other)

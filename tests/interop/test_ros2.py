@@ -54,9 +54,44 @@ def test_an_rclpy_node_drives(tmp_path: Path, sample: Sample, record_property: C
     record_property("rclpy in lockstep", f"{seconds} s driven in {seen['wall_s']:.1f} s, 50 Hz control over DDS")
 
 
+def test_a_node_commands_in_real_time_and_vanishes() -> None:
+    around = domain()
+    with (
+        console(PYTHON, around, "--ros2") as url,
+        client(url) as watcher,
+        program(around, PYTHON, str(HERE / "rclpy_driver.py"), "1e9") as driver,
+    ):
+        watcher.say(op="subscribe", topic="/vehicle/status/velocity_status")
+        watcher.hear(lambda heard: heard["msg"]["longitudinal_velocity"] > 3.0)
+        driver.kill()
+        watcher.hear(lambda heard: heard["msg"]["longitudinal_velocity"] < 0.1)
+
+
+def test_the_node_in_the_documentation_drives(tmp_path: Path) -> None:
+    page = (ROOT / "docs/ros2.md").read_text()
+    (example,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    path = tmp_path / "driver.py"
+    path.write_text(example)
+    around = domain()
+    with (
+        console(PYTHON, around, "--ros2") as url,
+        client(url) as watcher,
+        program(around, PYTHON, str(path)),
+    ):
+        watcher.say(op="subscribe", topic="/cmd_vel")  # accepted commands go to who watches them
+        assert watcher.message("/cmd_vel")["linear"]["x"] == 5.0
+        watcher.say(op="subscribe", topic="/odom")
+        watcher.hear(lambda heard: heard["topic"] == "/odom" and heard["msg"]["twist"]["twist"]["linear"]["x"] > 4.5)
+
+
+def test_without_rclpy_it_says_so_at_once(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["bridge", "serve", "--ros2", "--for", "1"]) == 2
+    assert "there is no rclpy; pip install 'simconsole[ros2]'" in capsys.readouterr().err
+
+
 @pytest.fixture(scope="module")
 def met() -> Iterator[Client]:
-    """A rosbridge client of a console that has joined a graph with a peer in it."""
+    """A rosbridge client of a console that has joined a graph with a peer in it: below all that can do without."""
     around = domain()
     with (
         console(PYTHON, around, "--ros2") as url,
@@ -149,38 +184,3 @@ def test_services_and_actions_of_clients(met: Client) -> None:
     wanted = {"flip False no", "feedback [0, 1]", "result 4 [0, 1, 1, 2]"}
     while wanted:
         wanted.discard(met.message("/ros/says")["data"])
-
-
-def test_a_node_commands_in_real_time_and_vanishes() -> None:
-    around = domain()
-    with (
-        console(PYTHON, around, "--ros2") as url,
-        client(url) as watcher,
-        program(around, PYTHON, str(HERE / "rclpy_driver.py"), "1e9") as driver,
-    ):
-        watcher.say(op="subscribe", topic="/vehicle/status/velocity_status")
-        watcher.hear(lambda heard: heard["msg"]["longitudinal_velocity"] > 3.0)
-        driver.kill()
-        watcher.hear(lambda heard: heard["msg"]["longitudinal_velocity"] < 0.1)
-
-
-def test_the_node_in_the_documentation_drives(tmp_path: Path) -> None:
-    page = (ROOT / "docs/ros2.md").read_text()
-    (example,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
-    path = tmp_path / "driver.py"
-    path.write_text(example)
-    around = domain()
-    with (
-        console(PYTHON, around, "--ros2") as url,
-        client(url) as watcher,
-        program(around, PYTHON, str(path)),
-    ):
-        watcher.say(op="subscribe", topic="/cmd_vel")  # accepted commands go to who watches them
-        assert watcher.message("/cmd_vel")["linear"]["x"] == 5.0
-        watcher.say(op="subscribe", topic="/odom")
-        watcher.hear(lambda heard: heard["topic"] == "/odom" and heard["msg"]["twist"]["twist"]["linear"]["x"] > 4.5)
-
-
-def test_without_rclpy_it_says_so_at_once(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["bridge", "serve", "--ros2", "--for", "1"]) == 2
-    assert "there is no rclpy; pip install 'simconsole[ros2]'" in capsys.readouterr().err

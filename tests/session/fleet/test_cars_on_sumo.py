@@ -32,7 +32,7 @@ points:
   - {time_s: 2.2, clutch: 0, throttle: 0.5}
 """
 SESSION = """schema: 1
-environment: {world: urban_signals, traffic: {seed: 3, period_ms: PERIOD, sumo: {vehicles: 60, pedestrians: 5, MORE}}}
+environment: {world: urban_signals, traffic: {seed: 3, period_ms: PERIOD, sumo: {vehicles: 40, pedestrians: 5, MORE}}}
 scenario:
   vehicle: hatchback
   duration_s: DURATION
