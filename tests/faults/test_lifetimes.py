@@ -113,8 +113,9 @@ def test_each_server_refuses_a_program_that_another_drive_started(edge: Callable
 @pytest.mark.fault("P02")
 def test_an_autopilot_of_another_drive_ends_at_once_and_drives_nobody(tmp_path: Path) -> None:
     port = free_port()
-    session = write_session(tmp_path, port, autopilot=False, workers=False)
-    with Running(tmp_path, "drive", session, "--for", 8, "--out", tmp_path / "bundle", "--json") as running:
+    session = write_session(tmp_path, port, autopilot=False, workers=False, report=False)
+    command = ("drive", session, "--for", 8, "--out", tmp_path / "bundle", "--json", "--no-pack")
+    with Running(tmp_path, *command) as running:
         wait_for_port_taken(port)
         done = simconsole("autopilot", "--url", f"ws://127.0.0.1:{port}", "--wait", 3600, **{DRIVE_VARIABLE: "0" * 32})
         assert running.process.poll() is None, "the drive goes on"
