@@ -40,7 +40,7 @@ def test_verify_says_that_a_bundle_is_whole_or_what_is_wrong(short: Path, tmp_pa
     content = bytearray((spoilt / "drive.log").read_bytes())
     content[-2000] ^= 1
     (spoilt / "drive.log").write_bytes(content)
-    done = simconsole("verify", spoilt, "--json")
+    done = within("verify", spoilt, "--json")
     assert done.returncode == 1
     found = results(done)
     assert not found["good"]
@@ -48,7 +48,7 @@ def test_verify_says_that_a_bundle_is_whole_or_what_is_wrong(short: Path, tmp_pa
 
 
 def test_compare_finds_a_bundle_equal_to_itself(short: Path) -> None:
-    done = simconsole("compare", short, short, "--json")
+    done = within("compare", short, short, "--json")
     assert done.returncode == 0
     assert results(done) == ALL_EQUAL
 
@@ -56,18 +56,18 @@ def test_compare_finds_a_bundle_equal_to_itself(short: Path) -> None:
 def test_report_is_written_again(short: Path, tmp_path: Path) -> None:
     short = Path(shutil.copytree(short, tmp_path / "copy"))
     (short / "report.html").unlink()
-    done = simconsole("report", short, "--json")
+    done = within("report", short, "--json")
     assert done.returncode == 0, done.stderr
     assert results(done)["duration_s"] == 3.0
     assert str(short / "report.html") in done.stderr
     assert (short / "report.html").read_text("utf-8").startswith("<!DOCTYPE html>")
-    assert simconsole("verify", short).returncode == 0
+    assert within("verify", short).returncode == 0
 
 
 def test_view_writes_the_scene_without_opening_it(short: Path, tmp_path: Path) -> None:
     short = Path(shutil.copytree(short, tmp_path / "copy"))
     (short / "scene.rrd").unlink()
-    done = simconsole("view", short, "--no-open", "--json")
+    done = within("view", short, "--no-open", "--json")
     assert done.returncode == 0, done.stderr
     assert results(done) == {"scene": str(short / "scene.rrd"), "problems": []}
     assert (short / "scene.rrd").read_bytes()[:4] == b"RRF2"
@@ -104,11 +104,11 @@ def test_compare_finds_two_drives_of_one_script_equal(short: Path, script: Path,
     done = simconsole("drive", "--headless", "--driver", f"script:{script}", "--for", 3, "--out", again, "--json")
     assert done.returncode == 0, done.stderr
     assert results(done)["packing_failure"] is None
-    compared = simconsole("compare", short, again, "--json")
+    compared = within("compare", short, again, "--json")
     assert compared.returncode == 0, compared.stderr
     assert results(compared) == ALL_EQUAL
     assert not (again / "drive.log").exists()
-    assert simconsole("unpack", again).returncode == 0
+    assert within("unpack", again).returncode == 0
     assert (short / "drive.log").read_bytes() == (again / "drive.log").read_bytes()
 
 
@@ -123,14 +123,14 @@ def test_a_packed_bundle_serves_every_command(copy: Path) -> None:
         *("drive.parquet", "manifest.json", "report.html", "scene.rrd", "session.json")
     ]
     for words in (["verify"], ["replay"], ["report"], ["view", "--no-open"], ["verify"]):
-        done = simconsole(*words, copy)
+        done = within(*words, copy)
         assert done.returncode == 0, (words, done.stdout, done.stderr)
-    assert simconsole("unpack", copy).returncode == 0
+    assert within("unpack", copy).returncode == 0
     assert (copy / "drive.log").read_bytes() == log
 
 
 def test_what_cannot_be_packed_is_named_and_the_others_are_packed(copy: Path, tmp_path: Path) -> None:
-    done = simconsole("pack", tmp_path / "nowhere", copy, "--json")
+    done = within("pack", tmp_path / "nowhere", copy, "--json")
     assert done.returncode == 2
     assert list(results(done)["failures"]) == [str(tmp_path / "nowhere")]
     assert "nowhere/manifest.json: not a bundle" in done.stderr
@@ -146,7 +146,7 @@ def forged(copy: Path, rewrite_log: Callable[..., None], rewrite_checksums: Call
 
 
 def test_compare_names_every_field_that_differs_with_the_ticks_around(short: Path, forged: Path) -> None:
-    done = simconsole("compare", short, forged, "--json")
+    done = within("compare", short, forged, "--json")
     assert done.returncode == 1
     found = results(done)
     (difference,) = found["differences"]
@@ -161,35 +161,35 @@ def test_compare_names_every_field_that_differs_with_the_ticks_around(short: Pat
 
 @pytest.fixture
 def key(tmp_path: Path) -> Path:
-    made = simconsole("sign", "--new-key", tmp_path / "lab.pem", "--json")
+    made = within("sign", "--new-key", tmp_path / "lab.pem", "--json")
     assert made.returncode == 0, made.stderr
     assert results(made)["public_key"] in made.stderr.splitlines()[0]
     return tmp_path / "lab.pem"
 
 
 def test_a_bundle_is_signed_checked_and_changed_only_without_its_signature(copy: Path, key: Path) -> None:
-    assert simconsole("verify", copy, "--signer", f"{key}.pub").returncode == 1, "not signed yet"
-    done = simconsole("sign", copy, "--key", key, "--name", "Lab 2", "--json")
+    assert within("verify", copy, "--signer", f"{key}.pub").returncode == 1, "not signed yet"
+    done = within("sign", copy, "--key", key, "--name", "Lab 2", "--json")
     assert done.returncode == 0, done.stderr
-    checked = simconsole("verify", copy, "--signer", f"{key}.pub")
+    checked = within("verify", copy, "--signer", f"{key}.pub")
     assert checked.returncode == 0, checked.stdout
     assert checked.stdout.splitlines()[0] == f"{copy}: whole"
     assert f"by Lab 2 with the key of {key}.pub" in checked.stdout
-    assert results(simconsole("verify", copy, "--json"))["good"]
+    assert results(within("verify", copy, "--json"))["good"]
     for command in ("report", "sign"):
-        refused = complaint(simconsole(command, copy, *(["--key", key] if command == "sign" else [])))
+        refused = complaint(within(command, copy, *(["--key", key] if command == "sign" else [])))
         assert f"take the signature away first: simconsole sign {copy} --remove" in refused
-    assert simconsole("view", copy, "--no-open").stdout == f"{copy / 'scene.rrd'}\n", "the one that was signed"
-    assert simconsole("replay", copy).returncode == 0
-    assert simconsole("verify", copy, "--signer", f"{key}.pub").returncode == 0
-    assert simconsole("sign", copy, "--remove").returncode == 0
-    assert simconsole("report", copy).returncode == 0
-    assert simconsole("verify", copy).returncode == 0
+    assert within("view", copy, "--no-open").stdout == f"{copy / 'scene.rrd'}\n", "the one that was signed"
+    assert within("replay", copy).returncode == 0
+    assert within("verify", copy, "--signer", f"{key}.pub").returncode == 0
+    assert within("sign", copy, "--remove").returncode == 0
+    assert within("report", copy).returncode == 0
+    assert within("verify", copy).returncode == 0
 
 
 def test_only_a_whole_bundle_is_signed(copy: Path, key: Path) -> None:
     (copy / "notes.txt").write_text("not the drive's")
-    done = simconsole("sign", copy, "--key", key)
+    done = within("sign", copy, "--key", key)
     assert done.returncode == 1
     assert done.stdout.splitlines() == [
         f"{copy}: not signed, for it is not whole",
@@ -222,7 +222,7 @@ def test_tolerances_are_read_from_a_file(
 ) -> None:
     (tmp_path / "tolerances.yaml").write_text(text)
     bundles = (short, forged) if command == "compare" else (forged,)
-    done = simconsole(command, *bundles, "--tolerances", tmp_path / "tolerances.yaml", "--json")
+    done = within(command, *bundles, "--tolerances", tmp_path / "tolerances.yaml", "--json")
     assert done.returncode == code, done.stdout + done.stderr
     assert results(done)["equal"] is (code == 0)
     assert "every hash equal" not in done.stderr

@@ -91,12 +91,20 @@ class Tracked(NamedTuple):
 
 
 def tracked(
-    world: CourseProfile, vehicle: str, link: str, folder: Path, tracker: str = "preview", control: str = "{}"
+    world: CourseProfile,
+    vehicle: str,
+    link: str,
+    folder: Path,
+    tracker: str = "preview",
+    control: str = "{}",
+    until_m: float = math.inf,
 ) -> Tracked:
     """Drive one lap over the link (YAML of a LinkProfile), behind a gate (of a ControlProfile), and measure."""
     folder.mkdir()
     (folder / "course.yaml").write_text(to_text(world, "random"))
-    return tracked_on(Course(world), "course.yaml", vehicle, link, folder, tracker=tracker, control=control)
+    return tracked_on(
+        Course(world), "course.yaml", vehicle, link, folder, tracker=tracker, control=control, until_m=until_m
+    )
 
 
 def tracked_on(

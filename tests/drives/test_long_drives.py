@@ -53,7 +53,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory, module_sample: Sample) -> Pa
     """A drive of which a quarter is like the whole: by the autopilot, but for the beginning."""
     folder = tmp_path_factory.mktemp("whole")
     (folder / "session.yaml").write_text(SESSION)
-    words = ("--for", module_sample.of(100, 260), "--out", folder / "bundle", "--no-pack")
+    words = ("--for", module_sample.of(60, 260), "--out", folder / "bundle", "--no-pack")
     done = simconsole("drive", folder / "session.yaml", *words)
     assert done.returncode == 0, done.stderr
     return folder / "bundle"
@@ -92,7 +92,7 @@ def test_a_drive_of_two_hours_takes_400_megabytes_in_each_process(
     tmp_path: Path, sample: Sample, record_property: Callable[[str, object], None]
 ) -> None:
     """Driven, reported, shown, replayed, verified and compared by the program; 3.6 GB of log."""
-    seconds = sample.of(20, 7200)
+    seconds = sample.of(5, 7200)
     (tmp_path / "session.yaml").write_text(SESSION)
     bundle = tmp_path / "bundle"
     drive = ("drive", tmp_path / "session.yaml", "--for", seconds, "--out", bundle)

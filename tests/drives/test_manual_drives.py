@@ -80,7 +80,7 @@ def test_people_keep_the_lane_as_published_and_differ(sample: Sample, tmp_path: 
     found = []
     for number in range(sample.of(2, 20)):
         world = "country" if number % 2 == 0 else "motorway"
-        done = by_hand(world, sample.seed + number, tmp_path / str(number))
+        done = by_hand(world, sample.seed + number, tmp_path / str(number), sample.of(200, 600))
         found.append(done.deviation_m)
         assert LEAST_M <= done.deviation_m <= MOST_M
         assert stays(done, world)
@@ -142,11 +142,11 @@ def test_in_a_bend_the_person_takes_over_and_stays_in_the_lane(
 
 def test_the_command_line_lets_any_person_drive_a_session_that_names_none(tmp_path: Path) -> None:
     (tmp_path / "session.yaml").write_text(
-        "schema: 1\nenvironment: {world: skid_pad}\noutputs: {hud: null, scene: null}\n"
+        "schema: 1\nenvironment: {world: skid_pad}\noutputs: {hud: null, scene: null, report: false}\n"
     )
     bundles = []
     for seed in (1, 2):
-        words = ("--headless", "--driver", "virtual", "--person", seed, "--for", 20, "--out", tmp_path / str(seed))
+        words = ("--headless", "--driver", "virtual", "--person", seed, "--for", 5, "--out", tmp_path / str(seed))
         done = simconsole("drive", tmp_path / "session.yaml", *words, "--json")
         assert done.returncode == 0, done.stderr
         assert "by the person " in done.stderr

@@ -25,12 +25,12 @@ LINK = "{seed: 3, delay_ms: 40, localisation: {position_noise_m: 0.02, yaw_noise
 def test_behind_a_vehicle_that_stops_and_drives_on(driver: str, tmp_path: Path) -> None:
     (tmp_path / "map.net.xml").write_bytes(generated(*TOWN))
     (tmp_path / "world.yaml").write_text(
-        "schema: 1\nkind: roads\ntitle: follow\nmap: {name: map.net.xml}\nroute: {by: random, seed: 3, length_m: 500}\n"
+        "schema: 1\nkind: roads\ntitle: follow\nmap: {name: map.net.xml}\nroute: {by: random, seed: 3, length_m: 250}\n"
     )
     bridge = f"{{port: 0, link: {LINK}}}" if driver == "autopilot" else "null"
     (tmp_path / "session.yaml").write_text(
         f"schema: 1\nenvironment: {{world: world.yaml, traffic: {{vehicles: 0, parked: 0, lead: {LEAD}}}}}\n"
-        "scenario: {vehicle: hatchback, duration_s: 40}\n"
+        "scenario: {vehicle: hatchback, duration_s: 34}\n"
         f"outputs: {{hud: null, scene: null, report: false, bridge: {bridge}}}\n"
         f"{BY_ROS if driver == 'autopilot' else BY_HAND}"
     )
@@ -38,9 +38,6 @@ def test_behind_a_vehicle_that_stops_and_drives_on(driver: str, tmp_path: Path) 
     names = ("situation.lead_gap_m", "situation.lead_speed_mps", "vehicle.vx_mps")
     table = open_bundle(folder).log.table((*names, "events.events", "arbitration.mode", "ros.accel_mps2"))
     gap, lead, speed = (table.column(name) for name in names)
-    assert not (table.column("events.events").astype(int) & int(Event.COLLISION)).any()
-    assert gap.min() > 1.5
-    stood = (lead < 0.01) & (speed < 0.02) & (np.maximum.accumulate(speed) > 1.0)
     assert not (table.column("events.events").astype(int) & int(Event.COLLISION)).any()
     assert gap.min() > 1.5
     stood = (lead < 0.01) & (speed < 0.02) & (np.maximum.accumulate(speed) > 1.0)

@@ -10,6 +10,8 @@ import pytest
 from simconsole.cli.turtlebot.turtlebot_command import failing
 from simconsole.drivers.robots.navigation.planner import KEEP_M
 from simconsole.profiles.faults import Silent
+from simconsole.profiles.files.loader import profiles_folder
+from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.replay_bundle import replay_bundle
 from simconsole.recording.bundles.verification import verify
 from simconsole.session.fleet.members import members
@@ -24,12 +26,12 @@ CPU_S = 150.0
 class Run:
     """One run of the command, and what it took of the processor."""
 
-    def __init__(self, folder: Path, seed: int, objective: str) -> None:
+    def __init__(self, folder: Path, seed: int, objective: str, *more: object, code: int = 0) -> None:
         before = os.times()
         self.folder = folder / f"{objective}-{seed}"
-        done = simconsole("turtlebot", "--out", self.folder, "--seed", seed, "--objective", objective, "--json")
+        done = simconsole("turtlebot", "--out", self.folder, "--seed", seed, "--objective", objective, "--json", *more)
         after = os.times()
-        assert done.returncode == 0, done.stdout + done.stderr
+        assert done.returncode == code, done.stdout + done.stderr
         self.cpu_s = after.children_user + after.children_system - before.children_user - before.children_system
         self.said = results(done)
         self.text = done.stderr
@@ -82,11 +84,18 @@ def test_everything_is_written_and_replays(runs: list[Run]) -> None:
         assert replay_bundle(folder).hashes_equal
 
 
-def test_one_seed_gives_one_drive(runs: list[Run], tmp_path: Path) -> None:
-    first = runs[0]
+def test_one_seed_gives_one_drive(runs: list[Run], sample: Sample, tmp_path: Path) -> None:
+    """The sample drives its beginning again, in which the robots map and no task is done yet."""
+    first, session, seconds = runs[0], tmp_path / "session.yaml", sample.of(25, 600)
+    shipped = (profiles_folder() / "sessions" / "turtlebot3_team.yaml").read_text()
+    session.write_text(shipped.replace("duration_s: 600", f"duration_s: {seconds}"))
     objective, _, seed = first.folder.name.partition("-")
-    again = Run(tmp_path, int(seed), objective)
-    assert again.said["digests"] == first.said["digests"]
+    again = Run(tmp_path, int(seed), objective, "--session", session, code=sample.of(1, 0))
+    for robot in ("", "tb3_1", "tb3_2"):
+        one, other = (open_bundle(run.folder / "bundle" / robot) for run in (first, again))
+        assert other.manifest.ticks == sample.of(seconds * 200, one.manifest.ticks)
+        for before, after in zip(one.log, other.log, strict=sample.long):
+            assert (before.tick, before.vector.tobytes()) == (after.tick, after.vector.tobytes())
 
 
 def test_a_session_without_platforms_is_refused() -> None:
