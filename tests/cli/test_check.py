@@ -7,7 +7,7 @@ import pytest
 from simconsole.cli import check as commands
 from simconsole.cli.check import check
 from simconsole.evaluation.checks.scenario_check import Verdict
-from tests.drives.console import complaint, results, simconsole
+from tests.drives.console import complaint, results, simconsole, within
 
 
 def test_a_file_that_cannot_be_written_is_one_line(tmp_path: Path) -> None:
@@ -17,11 +17,11 @@ def test_a_file_that_cannot_be_written_is_one_line(tmp_path: Path) -> None:
 
 def test_the_command_line_selects_by_words(tmp_path: Path) -> None:
     for name in ("slow_start", "slow_stop"):
-        assert simconsole("new", "scenario", name, "--out", tmp_path).returncode == 0
-    done = simconsole("check", tmp_path, "-k", "slow and not stop", "--json")
+        assert within("new", "scenario", name, "--out", tmp_path).returncode == 0
+    done = within("check", tmp_path, "-k", "slow and not stop", "--json")
     assert done.returncode == 0, done.stdout + done.stderr
     assert [one["scenario"] for one in results(done)["scenarios"]] == ["slow_start"]
-    assert "-k: value fast" in complaint(simconsole("check", tmp_path, "-k", "fast"))
+    assert "-k: value fast" in complaint(within("check", tmp_path, "-k", "fast"))
 
 
 VERDICTS = {

@@ -10,7 +10,7 @@ from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.verification import verify
 from simconsole.session.headless import LOOKED_AT
 from simconsole.values.signals import NEVER_TICKS, Mode, Validity
-from tests.drives.console import complaint, results, simconsole
+from tests.drives.console import complaint, results, simconsole, within
 
 PERSON = """\
 schema: 1
@@ -52,7 +52,7 @@ def test_a_recorded_cockpit_gives_the_same_samples_again(plain: Path, tmp_path: 
     lines = trace.read_text().splitlines()[2:]
     rows = np.array([[float(value) for value in line.split(",")] for line in lines])
     bundle = tmp_path / "bundle"
-    done = simconsole("drive", plain, "--driver", f"trace:{trace}", "--for", 2, "--out", bundle, "--json")
+    done = within("drive", plain, "--driver", f"trace:{trace}", "--for", 2, "--out", bundle, "--json")
     assert done.returncode == 0, done.stderr
     table = open_bundle(bundle).log.table()
     for at, name in enumerate(COLUMNS):
@@ -67,7 +67,7 @@ def test_after_its_end_a_trace_is_a_lost_cockpit(plain: Path, tmp_path: Path) ->
     trace = tmp_path / "trace.csv"
     assert simconsole("devices", "record", "--virtual", "--for", 0.2, "--out", trace).returncode == 0
     bundle = tmp_path / "bundle"
-    done = simconsole("drive", plain, "--driver", f"trace:{trace}", "--for", 1, "--out", bundle)
+    done = within("drive", plain, "--driver", f"trace:{trace}", "--for", 1, "--out", bundle)
     assert done.returncode == 0, done.stderr
     table = open_bundle(bundle).log.table()
     validity = table.column("driver.wheel_validity")
@@ -92,7 +92,7 @@ def test_a_simulated_person_drives_through_sdl_without_a_controller(tmp_path: Pa
 
 def test_with_nobody_seated_nothing_is_commanded(plain: Path, tmp_path: Path) -> None:
     bundle = tmp_path / "bundle"
-    done = simconsole("drive", plain, "--driver", "none", "--for", 0.5, "--out", bundle, "--json")
+    done = within("drive", plain, "--driver", "none", "--for", 0.5, "--out", bundle, "--json")
     assert done.returncode == 0, done.stderr
     table = open_bundle(bundle).log.table()
     assert (table.column("sample.wheel_age_ticks") == NEVER_TICKS).all()
@@ -106,7 +106,7 @@ def test_a_drive_of_one_tick_is_a_whole_drive(tmp_path: Path, script: Path) -> N
     done = simconsole("drive", "--headless", "--driver", f"script:{script}", "--for", 0.004, "--out", bundle, "--json")
     assert done.returncode == 0, done.stderr
     assert results(done)["ticks"] == 1
-    assert simconsole("replay", bundle).returncode == 0
+    assert within("replay", bundle).returncode == 0
 
 
 def test_a_session_finds_its_script_beside_itself(tmp_path: Path, script: Path) -> None:
@@ -123,11 +123,11 @@ def test_a_session_finds_its_script_beside_itself(tmp_path: Path, script: Path) 
 
 def test_participant_trial_and_notes_are_kept_in_the_bundle(plain: Path, tmp_path: Path) -> None:
     options = ["--driver", "none", "--for", 0.1, "--participant", "P07", "--trial", 3]
-    done = simconsole("drive", plain, *options, "--note", "tired", "--note", "glasses", "--out", tmp_path / "b")
+    done = within("drive", plain, *options, "--note", "tired", "--note", "glasses", "--out", tmp_path / "b")
     assert done.returncode == 0, done.stderr
     known = open_bundle(tmp_path / "b").manifest.provenance
     assert (known.participant, known.trial, known.notes) == ("P07", "3", ("tired", "glasses"))
     assert known.devices == (), "nobody sat there"
-    refused = complaint(simconsole("drive", plain, "--participant", "P" * 65, "--out", tmp_path / "c"))
+    refused = complaint(within("drive", plain, "--participant", "P" * 65, "--out", tmp_path / "c"))
     assert "participant: value of 65 characters: up to 64" in refused
     assert not (tmp_path / "c").exists()

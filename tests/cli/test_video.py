@@ -6,13 +6,13 @@ import av
 import pygame
 import pytest
 
-from tests.drives.console import complaint, results, simconsole
+from tests.drives.console import complaint, results, simconsole, within
 
 
 def test_a_video_shows_the_drive(short: Path, tmp_path: Path) -> None:
     path = tmp_path / "drive.mp4"
     words = ("--from", 1, "--to", 2, "--fps", 10, "--size", "640x480", "--out", path)
-    done = simconsole("video", short, *words, "--json")
+    done = within("video", short, *words, "--json")
     assert done.returncode == 0, done.stderr
     assert results(done) == {
         "video": str(path), "frames": 11, "fps": 10, "bytes": path.stat().st_size, "problems": [],
@@ -42,4 +42,4 @@ def test_one_moment_is_a_picture(short: Path, tmp_path: Path) -> None:
     ],
 )
 def test_what_cannot_be_meant_is_one_line(short: Path, words: tuple[object, ...], told: str) -> None:
-    assert told in complaint(simconsole("video", short, *words))
+    assert told in complaint(within("video", short, *words))

@@ -80,7 +80,7 @@ def test_people_keep_the_lane_as_published_and_differ(sample: Sample, tmp_path: 
     found = []
     for number in range(sample.of(2, 20)):
         world = "country" if number % 2 == 0 else "motorway"
-        done = by_hand(world, sample.seed + number, tmp_path / str(number), sample.of(200, 600))
+        done = by_hand(world, sample.seed + number, tmp_path / str(number), sample.of(120, 600))
         found.append(done.deviation_m)
         assert LEAST_M <= done.deviation_m <= MOST_M
         assert stays(done, world)

@@ -16,7 +16,7 @@ from simconsole.values.errors import ProfileError
 from simconsole.values.signals import Mode
 
 TOKEN = "own-token-that-nobody-else-has"
-LIMIT_S = 20
+LIMIT_S = 12
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ from simconsole.evaluation.checks.scenario_check import check_scenario
 from simconsole.profiles.files.loader import profiles_folder
 from simconsole.session.resolution import load_scenario
 from simconsole.values.errors import ProfileError
-from tests.drives.console import results, simconsole
+from tests.drives.console import results, within
 from tests.drives.fixtures import Checked
 from tests.samples import Sample
 
@@ -104,7 +104,7 @@ def test_a_value_beyond_its_limit_fails_and_is_in_the_report(
     altered: Callable[[str, str, str], Path], tmp_path: Path
 ) -> None:
     path = altered("stall", "end_engine_running, max: 0", "end_engine_running, min: 1")
-    done = simconsole("check", path, FOLDER / "launch.yaml", "--report", tmp_path / "report.html", "--json")
+    done = within("check", path, FOLDER / "launch.yaml", "--report", tmp_path / "report.html", "--json")
     assert done.returncode == 1
     stall, launch = results(done)["scenarios"]
     assert (stall["passed"], launch["passed"]) == (False, True)

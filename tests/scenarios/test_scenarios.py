@@ -42,7 +42,7 @@ def test_a_shipped_scenario_keeps_its_bounds_and_its_golden(scenario: str, check
 def test_a_changed_control_value_is_named_with_tick_and_column(copied: Path) -> None:
     gentler = "{driver: none}\n  features: {control: {blind_stop_decel_mps2: 3.4}}"
     path = alter(copied / "command_lost.yaml", "{driver: none}", gentler)
-    done = simconsole("check", path, "--json")
+    done = within("check", path, "--json")
     assert done.returncode == 1, done.stdout + done.stderr
     problem, heads, *columns = results(done)["scenarios"][0]["problems"]
     assert problem.startswith(f"{copied / 'golden' / 'command_lost.csv'}: tick ")
@@ -80,11 +80,11 @@ def test_a_missing_golden_fails_and_says_how_to_accept_one(copied: Path) -> None
     golden = copied / "golden" / f"{QUICK}.csv"
     before = golden.read_bytes()
     golden.unlink()
-    done = simconsole("check", copied / f"{QUICK}.yaml")
+    done = within("check", copied / f"{QUICK}.yaml")
     assert done.returncode == 1
     assert f"{golden}: no golden; accept one with --update-golden" in done.stdout
     assert not golden.exists(), "a check accepts nothing by itself"
-    assert simconsole("check", copied / f"{QUICK}.yaml", "--update-golden").returncode == 0
+    assert within("check", copied / f"{QUICK}.yaml", "--update-golden").returncode == 0
     assert golden.read_bytes() == before, "this machine drives what the golden's machine drove"
 
 
@@ -101,7 +101,7 @@ def test_two_jobs_give_the_verdicts_of_one_and_a_junit_file(copied: Path, tmp_pa
     alter(copied / "command_lost.yaml", "min: -4.5}", "min: -2.0}")
     names = [copied / "command_lost.yaml", copied / f"{QUICK}.yaml"]
     junit = tmp_path / "junit.xml"
-    one = simconsole("check", *names, "--json")
+    one = within("check", *names, "--json")
     two = simconsole("check", *names, "--json", "--jobs", 2, "--junit", junit)
     assert one.returncode == two.returncode == 1
     assert one.stdout == two.stdout

@@ -9,13 +9,13 @@ from pathlib import Path
 import pytest
 
 from simconsole.cli.new.new_command import KINDS
-from tests.drives.console import complaint, results, simconsole
+from tests.drives.console import complaint, results, within
 from tests.paths import ROOT
 
 
 @pytest.mark.parametrize("kind", sorted(KINDS))
 def test_a_template_passes_its_own_test(kind: str, tmp_path: Path) -> None:
-    done = simconsole("new", kind, "mine", "--out", tmp_path / "lab", "--json")
+    done = within("new", kind, "mine", "--out", tmp_path / "lab", "--json")
     assert done.returncode == 0, done.stderr
     made = [Path(path) for path in results(done)["files"]]
     assert sorted(path for path in (tmp_path / "lab").rglob("*") if path.is_file()) == sorted(made)
@@ -29,7 +29,7 @@ def test_a_template_passes_its_own_test(kind: str, tmp_path: Path) -> None:
 
 def test_a_template_uses_no_name_of_ours_but_the_one_given(tmp_path: Path) -> None:
     for kind in KINDS:
-        simconsole("new", kind, "other_name", "--out", tmp_path / kind)
+        within("new", kind, "other_name", "--out", tmp_path / kind)
         for path in (tmp_path / kind).rglob("*"):
             if path.is_file():
                 assert "$" not in path.read_text(), path
@@ -39,9 +39,9 @@ def test_a_template_uses_no_name_of_ours_but_the_one_given(tmp_path: Path) -> No
 
 
 def test_nothing_that_is_there_is_replaced(tmp_path: Path) -> None:
-    assert simconsole("new", "session", "mine", "--out", tmp_path).returncode == 0
+    assert within("new", "session", "mine", "--out", tmp_path).returncode == 0
     (tmp_path / "mine.yaml").write_text("changed")
-    done = simconsole("new", "session", "mine", "--out", tmp_path)
+    done = within("new", "session", "mine", "--out", tmp_path)
     assert done.returncode == 2
     assert "is there already" in complaint(done)
     assert (tmp_path / "mine.yaml").read_text() == "changed"
@@ -49,7 +49,7 @@ def test_nothing_that_is_there_is_replaced(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["Mine", "my-car", "../mine", "", "1st", "x" * 42])
 def test_a_name_that_is_no_module_is_refused(name: str, tmp_path: Path) -> None:
-    done = simconsole("new", "controller", name, "--out", tmp_path / "lab")
+    done = within("new", "controller", name, "--out", tmp_path / "lab")
     assert done.returncode == 2
     assert "NAME" in complaint(done)
     assert not (tmp_path / "lab").exists()
@@ -57,5 +57,5 @@ def test_a_name_that_is_no_module_is_refused(name: str, tmp_path: Path) -> None:
 
 def test_a_folder_that_cannot_be_made_is_one_line(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    done = simconsole("new", "controller", "mine", "--out", tmp_path / "file" / "lab")
+    done = within("new", "controller", "mine", "--out", tmp_path / "file" / "lab")
     assert "cannot be written" in complaint(done)

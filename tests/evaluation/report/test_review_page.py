@@ -9,7 +9,7 @@ import pytest
 from simconsole.evaluation.checks.review import ColumnReview, Review
 from simconsole.evaluation.report.review_page import PLOTS, write_review
 from simconsole.values.errors import RecordingError
-from tests.drives.console import complaint, simconsole
+from tests.drives.console import complaint, within
 
 
 def column(name: str) -> ColumnReview:
@@ -44,8 +44,8 @@ def test_a_page_that_cannot_be_written_is_told(tmp_path: Path) -> None:
 
 
 def test_the_command_shows_who_left_and_who_kept_its_golden(tmp_path: Path) -> None:
-    simconsole("new", "scenario", "kept", "--out", tmp_path)
-    simconsole("new", "scenario", "left", "--out", tmp_path)
+    within("new", "scenario", "kept", "--out", tmp_path)
+    within("new", "scenario", "left", "--out", tmp_path)
     path = tmp_path / "left.yaml"
     path.write_text(path.read_text().replace("accel_mps2: 1.5", "accel_mps2: 1.6"))
     near = tmp_path / "near.yaml"
@@ -53,7 +53,7 @@ def test_the_command_shows_who_left_and_who_kept_its_golden(tmp_path: Path) -> N
     (tmp_path / "golden" / "near.csv").write_bytes((tmp_path / "golden" / "left.csv").read_bytes())
     golden = (tmp_path / "golden" / "left.csv").read_bytes()
     page = tmp_path / "review.html"
-    done = simconsole("check", tmp_path / "kept.yaml", path, near, "--review", page)
+    done = within("check", tmp_path / "kept.yaml", path, near, "--review", page)
     assert done.returncode == 1
     text = page.read_text()
     assert "Equal to the bit: kept." in text
@@ -64,6 +64,6 @@ def test_the_command_shows_who_left_and_who_kept_its_golden(tmp_path: Path) -> N
 
 
 def test_looking_and_accepting_at_once_is_refused(tmp_path: Path) -> None:
-    done = simconsole("check", "launch_and_stop", "--review", tmp_path / "review.html", "--update-golden")
+    done = within("check", "launch_and_stop", "--review", tmp_path / "review.html", "--update-golden")
     assert done.returncode == 2
     assert "look first" in complaint(done)
