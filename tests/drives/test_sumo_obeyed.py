@@ -17,7 +17,7 @@ from tests.paths import ROOT
 from tests.samples import Sample
 
 SEEDS, LONG_SEEDS = 1, 20
-DRIVEN_S = 110
+DRIVEN_S = 80
 COLUMNS = (
     *("rules.red_light", "rules.collision", "rules.failing_to_yield", "vehicle.distance_m", "situation.signal_state"),
     *(f"ahead.{name}" for name in ("traffic_lost", "approach", "signal_state", "signal_tick", "yield_m")),

@@ -13,18 +13,19 @@ from tests.drives.console import complaint, results, within
 from tests.paths import ROOT
 
 
-@pytest.mark.parametrize("kind", sorted(KINDS))
-def test_a_template_passes_its_own_test(kind: str, tmp_path: Path) -> None:
-    done = within("new", kind, "mine", "--out", tmp_path / "lab", "--json")
-    assert done.returncode == 0, done.stderr
-    made = [Path(path) for path in results(done)["files"]]
-    assert sorted(path for path in (tmp_path / "lab").rglob("*") if path.is_file()) == sorted(made)
+def test_every_template_passes_its_own_test(tmp_path: Path) -> None:
+    for kind in KINDS:
+        done = within("new", kind, f"mine_{kind}", "--out", tmp_path / kind, "--json")
+        assert done.returncode == 0, done.stderr
+        made = [Path(path) for path in results(done)["files"]]
+        assert sorted(path for path in (tmp_path / kind).rglob("*") if path.is_file()) == sorted(made)
+    tests = [f"{kind}/test_mine_{kind}.py" for kind in KINDS]
+    words = [sys.executable, "-m", "pytest", "--rootdir", str(tmp_path), "-rA", "-p", "no:cacheprovider", *tests]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    words = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "test_mine.py"]
-    tested = subprocess.run(words, cwd=tmp_path / "lab", env=environment, capture_output=True, text=True, check=False)
+    tested = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
     assert tested.returncode == 0, tested.stdout
-    assert " passed" in tested.stdout
-    assert "skipped" not in tested.stdout
+    assert all(f"PASSED {test}" in tested.stdout for test in tests)
+    assert "SKIPPED" not in tested.stdout
 
 
 def test_a_template_uses_no_name_of_ours_but_the_one_given(tmp_path: Path) -> None:
