@@ -16,7 +16,7 @@ from simconsole.world.roads.road_map import ROAD
 from simconsole.world.roads.road_world import roads_of
 from tests.drives.random_courses import SETTLED_M, Tracked, tracked_on
 from tests.samples import Sample
-from tests.world.nets import CITY, TOWN, generated
+from tests.world.nets import CITY, SMALL, TOWN, generated
 
 LINK = "{seed: SEED, delay_ms: 40, localisation: {position_noise_m: 0.02, yaw_noise_deg: 0.2}}"
 RMS_CM = 3.0
@@ -109,7 +109,7 @@ def test_long_shipped_roads_are_driven_to_their_end(sample: Sample, world: str, 
 
 
 def test_bundle_holds_the_map_once_and_needs_no_other_file(tmp_path: Path) -> None:
-    net = generated(*TOWN)
+    net = generated(*SMALL)
     driven(tmp_path / "drive", net, 5, 60.0)
     for name in ("map.net.xml", "world.yaml"):
         (tmp_path / "drive" / name).unlink()

@@ -21,7 +21,7 @@ from tests.paths import ROOT
 from tests.samples import Sample
 
 PART = '["-junction0left", "road1", "road2", "road3", "ring0in-ring0out", "road4", "road5"]'
-PART_S, WHOLE_S = 110, 420
+PART_S, WHOLE_S = 85, 420
 PART_M, WHOLE_M = 250.0, 2500.0
 """So far everybody gets at least, whatever the lights show and who crosses."""
 BY_ROS = (

@@ -10,8 +10,21 @@ from simconsole.evaluation.counterfactual.drive_again import OPEN_LOOP, changes_
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.replay_bundle import recorded_session, replay_bundle
 from simconsole.recording.bundles.verification import verify
+from simconsole.session.lifecycle import drive
+from simconsole.session.resolution import load_session, resolve
 from simconsole.values.errors import ProfileError, RecordingError
-from tests.drives.fixtures import Demo
+
+HANDS_OVER = """\
+schema: 1
+environment: {world: urban_signals, traffic: {vehicles: 3, parked: 0, pedestrians: 0}}
+scenario: {vehicle: hatchback, duration_s: 14}
+features: {autopilot: urban_signals}
+outputs: {hud: null, scene: null, report: false, bridge: {port: 0}}
+devices:
+  driver: virtual
+  person: {sit_s: 0.5, cruise_kmh: 15, top_gear: 2, autonomy: {distance_m: 5}, take_back: {distance_m: 20}}
+mode: {pacing: lockstep, answer_timeout_s: 60}
+"""
 
 
 def test_a_heavier_car_gains_speed_more_slowly_by_the_same_pedals(short: Path, tmp_path: Path) -> None:
@@ -47,12 +60,13 @@ def test_the_same_value_is_the_same_drive(short: Path, tmp_path: Path) -> None:
     assert open_bundle(again.folder).manifest.digest == open_bundle(short).manifest.digest
 
 
-def test_a_hand_over_is_changed_by_its_control_profile_and_keeps_what_operators_said(
-    demo: Demo, tmp_path: Path
-) -> None:
-    """A person who takes back by steering: with a threshold that they do not reach, automation goes on."""
-    again = drive_again(demo.bundle, {"features.control.fade_s": 2.0}, tmp_path / "slow")
-    before, after = open_bundle(demo.bundle).log, open_bundle(again.folder).log
+def test_a_hand_over_is_changed_by_its_control_profile_and_keeps_what_operators_said(tmp_path: Path) -> None:
+    """Of a person among other cars who hands over and takes back."""
+    (tmp_path / "session.yaml").write_text(HANDS_OVER)
+    driven = drive(resolve(load_session(str(tmp_path / "session.yaml"))), tmp_path / "bundle").folder
+    again = drive_again(driven, {"features.control.fade_s": 2.0}, tmp_path / "slow")
+    before, after = open_bundle(driven).log, open_bundle(again.folder).log
+    assert [stream.name for stream in before.header.streams] == ["state", "acts", "road_users"]
     assert before.header.streams[1:] == after.header.streams[1:]
     share = "arbitration.remote_lateral"
     between = [
