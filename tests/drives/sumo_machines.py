@@ -1,7 +1,7 @@
 """Three machines: SUMO, the console and the autopilot, each in a network namespace of its own, with slow links.
 
-Run by `unshare --map-root-user --net`, in whose namespace the console is: python -m tests.drives.sumo_machines FOLDER.
-It writes FOLDER/lockstep-MS and FOLDER/seated, bundles of drives over links that are late by so many ms each way.
+Run by `unshare --map-root-user --net`, in whose namespace the console is: python -m tests.drives.sumo_machines FOLDER
+MS... It writes FOLDER/lockstep-MS and FOLDER/seated, bundles of drives over links that are late by so many ms each way.
 """
 
 import subprocess
@@ -19,7 +19,6 @@ from tests.drives.console import words
 from tests.patience import wait_until
 from tests.world.sumo_traffic.on_sumo import configuration
 
-DELAYS_MS: Final = (0, 20, 100)
 SEATED_MS: Final = 100
 PORT, BRIDGE_PORT = 8813, 9090
 _LISTENS = "0A"
@@ -114,12 +113,12 @@ def driven(folder: Path, sumo: Machine, delay_ms: int, more: str, duration_s: fl
 
 
 def main() -> None:
-    folder = Path(sys.argv[1])
+    folder, delays_ms = Path(sys.argv[1]), [int(delay_ms) for delay_ms in sys.argv[2:]]
     configuration(folder, _FLOW)
     _ip("link", "set", "lo", "up")
     with ExitStack() as stack:
         sumo, remote = Machine(1, stack), Machine(2, stack)
-        for delay_ms in DELAYS_MS:
+        for delay_ms in delays_ms:
             with late("127.0.0.1" if delay_ms else remote.console, BRIDGE_PORT, delay_ms) as (host, port):
                 url = f"ws://{host or remote.console}:{port}"
                 autopilot = words("autopilot", "--url", url, "--course", "urban_signals", "--wait", "600")

@@ -12,14 +12,21 @@ from simconsole.recording.bundles.replay_bundle import replay_bundle
 from simconsole.recording.recorded_road_users import recorded_road_users
 from tests.drives import sumo_machines
 from tests.drives.fixtures import Once
-from tests.drives.sumo_machines import DELAYS_MS
 from tests.paths import ROOT
+from tests.samples import Sample
+
+DELAYS_MS = (0, 100, 20)
 
 
 @pytest.fixture(scope="module")
-def drives(once: Once) -> Path:
+def delays_ms(module_sample: Sample) -> tuple[int, ...]:
+    return DELAYS_MS[: module_sample.of(2, len(DELAYS_MS))]
+
+
+@pytest.fixture(scope="module")
+def drives(once: Once, delays_ms: tuple[int, ...]) -> Path:
     def make(folder: Path) -> None:
-        words = [sys.executable, "-m", sumo_machines.__name__, str(folder)]
+        words = [sys.executable, "-m", sumo_machines.__name__, str(folder), *map(str, delays_ms)]
         done = subprocess.run(
             ["unshare", "--map-root-user", "--net", *words],
             capture_output=True,
@@ -38,8 +45,10 @@ def places(bundle: Bundle) -> list[bytes]:
     return [at.users.tobytes() for at in recorded_road_users(bundle.log)]
 
 
-def test_a_headless_drive_waits_for_both_and_goes_the_same_way_over_any_link(drives: Path) -> None:
-    bundles = [open_bundle(drives / f"lockstep-{delay_ms}") for delay_ms in DELAYS_MS]
+def test_a_headless_drive_waits_for_both_and_goes_the_same_way_over_any_link(
+    drives: Path, delays_ms: tuple[int, ...]
+) -> None:
+    bundles = [open_bundle(drives / f"lockstep-{delay_ms}") for delay_ms in delays_ms]
     for bundle in bundles:
         summary = bundle.manifest.summary
         assert summary["traffic"]["ego_error_m"] == 0.0

@@ -1,7 +1,7 @@
 """Drives among vehicles and people on the urban course with signals: nobody is touched, nothing is broken.
 
-The full size drives the whole course; the sample the part from a side road over the lights, two crossings and the
-roundabout to a third crossing.
+The full size drives the whole course; the sample for 85 s from a side road over the lights and crossings towards the
+roundabout.
 """
 
 from pathlib import Path
