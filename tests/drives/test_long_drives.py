@@ -85,19 +85,23 @@ def test_four_times_the_drive_takes_no_more_memory(
     told = ", ".join(f"{size / MB:+.1f} MB" for size in grown)
     record_property(f"{command[0]} of four times the drive", f"{told}, {seen[1].own.all / MB:.0f} MB in all")
     assert max(grown) <= allowed
+    assert max(one.all for found in seen for one in (found.own, found.child)) <= BAR_BYTES
 
 
 @pytest.mark.timeout(4 * 3600)
 def test_a_drive_of_two_hours_takes_400_megabytes_in_each_process(
     tmp_path: Path, sample: Sample, record_property: Callable[[str, object], None]
 ) -> None:
-    """Driven, reported, shown, replayed, verified and compared by the program; 3.6 GB of log."""
+    """Driven, reported, shown, replayed, verified and compared by the program; 3.6 GB of log.
+
+    The sample only drives: the commands are held to the same bar above, with longer drives than this one.
+    """
     seconds = sample.of(5, 7200)
     (tmp_path / "session.yaml").write_text(SESSION)
     bundle = tmp_path / "bundle"
     drive = ("drive", tmp_path / "session.yaml", "--for", seconds, "--out", bundle)
     others = [(*command, bundle, *((bundle,) if command[0] == "compare" else ())) for command in COMMANDS]
-    for words in (drive, *others):
+    for words in (drive, *others)[: sample.of(1, 1 + len(others))]:
         found = watched(tmp_path / "said", *words)
         assert found.done.returncode == 0, found.done.stdout + found.done.stderr
         told = f"{found.own.all / MB:.0f} MB, its child {found.child.all / MB:.0f} MB"
