@@ -18,7 +18,7 @@ from simconsole.values.signals import Mode
 from simconsole.values.units import DEG_PER_RAD, KMH_PER_MPS
 from simconsole.world.kinds.worlds import open_world
 from simconsole.world.route import Route
-from tests.drives.console import results, simconsole
+from tests.drives.console import results, within
 from tests.samples import Sample
 
 CAR_WIDTH_M = 1.79
@@ -147,7 +147,7 @@ def test_the_command_line_lets_any_person_drive_a_session_that_names_none(tmp_pa
     bundles = []
     for seed in (1, 2):
         words = ("--headless", "--driver", "virtual", "--person", seed, "--for", 5, "--out", tmp_path / str(seed))
-        done = simconsole("drive", tmp_path / "session.yaml", *words, "--json")
+        done = within("drive", tmp_path / "session.yaml", *words, "--json")
         assert done.returncode == 0, done.stderr
         assert "by the person " in done.stderr
         bundles.append(results(done)["digest"])
@@ -157,6 +157,6 @@ def test_the_command_line_lets_any_person_drive_a_session_that_names_none(tmp_pa
 def test_along_a_route_there_must_be_one(tmp_path: Path) -> None:
     (tmp_path / "session.yaml").write_text("schema: 1\noutputs: {hud: null, scene: null, report: false}\n")
     words = ("--headless", "--driver", "virtual", "--for", 1, "--out", tmp_path / "bundle")
-    done = simconsole("drive", tmp_path / "session.yaml", *words)
+    done = within("drive", tmp_path / "session.yaml", *words)
     assert done.returncode == 2
     assert "devices.person.along: value route: straight, without environment.world" in done.stderr
