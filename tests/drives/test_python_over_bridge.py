@@ -8,7 +8,7 @@ import pytest
 
 import simconsole
 from tests.drives.console import results
-from tests.drives.console import simconsole as command_line
+from tests.drives.console import within as command_line
 from tests.drives.controllers import Controller, command
 from tests.patience import PATIENCE_S
 from tests.ports import free_port
