@@ -10,7 +10,7 @@ import simconsole
 from simconsole import Command, OwnSignals, Session, Snapshot, hold_speed
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.values.errors import ProfileError, SimConsoleError
-from tests.drives.console import simconsole as command_line
+from tests.drives.console import within as command_line
 
 
 @pytest.fixture(scope="module")
