@@ -104,6 +104,7 @@ def test_port_of_the_system_s_choice_is_said_and_our_own_server_passes_the_check
         controller = Controller(port, lambda count, stamp: [])
         controller.start()
         wait_until(lambda: controller.odometry > 0, "odometry")
+        assert controller.statuses == []
         checked = simconsole("bridge", "check", f"ws://127.0.0.1:{port}", "--json")
         server.process.send_signal(signal.SIGINT)
         done = server.end()
