@@ -43,20 +43,38 @@ def ahead_of_lanes(road_map: RoadMap, legs: Sequence[Leg]) -> list[Ahead | None]
 
 
 def stop_lines(road_map: RoadMap, legs: Sequence[Leg], route: Route) -> tuple[StopLine, ...]:
-    """Return the stop lines of the signals on a way, in the route's order."""
+    """Return the stop lines of the signals on a way, in the route's order.
+
+    That at the end of an open way is one of them: with base_link at the end, a car's front is beyond it.
+    """
     found = []
     for leg in legs:
-        if leg.connection is not None and leg.connection.signal >= 0:
-            x, y = road_map.lanes[leg.connection.from_lane].line[-1, :2].tolist()
-            found.append(StopLine(route.project(x, y).s_m, leg.connection.signal, leg.connection.link))
+        movement = leg.connection or _onward(road_map, leg.lanes[-1])
+        if movement is not None and movement.signal >= 0:
+            x, y = road_map.lanes[movement.from_lane].line[-1, :2].tolist()
+            found.append(StopLine(route.project(x, y).s_m, movement.signal, movement.link))
     return tuple(found)
+
+
+def _onward(road_map: RoadMap, lane: int) -> Connection | None:
+    """Return the movement that a car may take from a lane, straight on where there are several; None if it ends."""
+    movements = [one for one in road_map.connections if one.from_lane == lane and _drivable(road_map, one)]
+    return _straight(movements) if movements else None
+
+
+def _straight(movements: Sequence[Connection]) -> Connection:
+    return next((one for one in movements if one.direction == _STRAIGHT), movements[0])
+
+
+def _drivable(road_map: RoadMap, movement: Connection) -> bool:
+    return road_map.lanes[movement.from_lane].drivable and road_map.lanes[movement.to_lane].drivable
 
 
 def _movements(road_map: RoadMap, legs: Sequence[Leg]) -> dict[int, list[Connection]]:
     """Return the connections that a car may take from each lane: the route's alone where the route uses the lane."""
     movements: dict[int, list[Connection]] = defaultdict(list)
     for one in road_map.connections:
-        if road_map.lanes[one.from_lane].drivable and road_map.lanes[one.to_lane].drivable:
+        if _drivable(road_map, one):
             movements[one.from_lane].append(one)
     for leg in legs:
         if leg.connection is not None:
@@ -69,7 +87,7 @@ def _following(movements: dict[int, list[Connection]]) -> dict[int, int]:
     """Return the lane after each lane: along the movement straight on where there are several."""
     following: dict[int, int] = {}
     for lane, connections in movements.items():
-        straight = next((one for one in connections if one.direction == _STRAIGHT), connections[0])
+        straight = _straight(connections)
         for one in connections:
             following |= dict(zip(one.via, (*one.via[1:], one.to_lane), strict=True))
         following[lane] = (*straight.via, straight.to_lane)[0]

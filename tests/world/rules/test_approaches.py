@@ -1,5 +1,7 @@
 """Which signal lies ahead of a lane."""
 
+import pytest
+
 from simconsole.profiles.files.world_files import load_world
 from simconsole.world.kinds.worlds import open_world
 from simconsole.world.roads.lane_graph import LaneGraph
@@ -57,6 +59,21 @@ def test_stop_lines_stand_at_the_ends_of_the_route_s_lanes() -> None:
         here, end = route.at(line.s_m), road_map.lanes[lane].line[-1]
         assert abs(here.x_m - end[0]) + abs(here.y_m - end[1]) < 0.6
     assert [line.s_m for line in lines] == sorted(line.s_m for line in lines)
+
+
+def test_where_the_route_ends_at_a_signal_its_stop_line_is_the_last() -> None:
+    """Base_link stops at the end: the front would be beyond a line that nobody looked at."""
+    road_map = generated_map(*CITY)
+    legs = LaneGraph(road_map).drawn(3, 900.0)
+    place = next(at for at, leg in enumerate(legs) if leg.connection is not None and leg.connection.signal >= 0)
+    turn, cut = legs[place].connection, (*legs[:place], legs[place]._replace(connection=None))
+    route = route_over(road_map, cut)
+    (*_, last) = stop_lines(road_map, cut, route)
+    assert turn is not None
+    assert last.signal == turn.signal
+    assert last.s_m == pytest.approx(route.length_m, abs=0.01)
+    links = {one.link for one in road_map.connections if one.from_lane == legs[place].lanes[-1]}
+    assert last.link in links
 
 
 def test_map_without_signals_has_none_and_a_far_one_is_not_looked_for() -> None:
