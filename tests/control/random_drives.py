@@ -58,8 +58,23 @@ COLUMNS: Final = (
     *DriverInput._fields, *RemoteCommand._fields, *VehicleState._fields, "events", "ecu_events",
     *(f"ecu_{name}" for name in RemoteCommand._fields), "human_nm",
 )  # fmt: skip
-KEPT: Final = ("hand_wheel_rad", "pressed", "edges", "age_ticks", "vx_mps", "events", "ecu_events", "ecu_age_ticks")
-"""What a drive keeps of its inputs: all of them would be as large as its outputs."""
+GIVEN: Final = ("hand_wheel_rad", "pressed", "edges", "age_ticks", "vx_mps", "events", "ecu_events", "ecu_age_ticks")
+DECIDED: Final = (
+    *("mode", "reason", "commander", "remote_lateral", "remote_longitudinal", "remote_guidance"),
+    *("person_road_wheel_rad", "remote_road_wheel_rad", "person_brake"),
+)
+COMMANDED: Final = (
+    *("road_wheel_rad", "throttle", "brake", "clutch", "handbrake", "gear", "automatic", "target_speed_mps"),
+    "gate_active",
+)
+KEPT: Final = (
+    MEMORY.at("mode_ticks"),
+    *(ARBITRATION.at(name) for name in DECIDED),
+    *(COMMAND.at(name) for name in COMMANDED),
+    SPEED_AT,
+)
+"""The columns that a drive keeps, as those GIVEN of its inputs: all of a long one are 430 MB."""
+EVERY: Final = 97
 KEEP_SPEED: Final = 12345.0
 """In the column of vx: the speed follows from the pedals. Anything else is what the vehicle reports."""
 
@@ -138,14 +153,20 @@ class Drive(NamedTuple):
     settings: ControlSettings
     tick_s: float
     inputs: dict[str, Rows]
-    outputs: Rows
+    outputs: dict[int, Rows]
+    finite: bool  # all of them, those that are not kept, too
+    some: Rows  # every so many rows whole
 
     def given(self, name: str) -> Rows:
         return self.inputs[name]
 
     def of(self, record: type[tuple[float, ...]], name: str) -> Rows:
         part = next(part for part in (MEMORY, ARBITRATION, COMMAND) if part.record is record)
-        return self.outputs[:, part.at(name)]
+        return self.outputs[part.at(name)]
+
+    @property
+    def speed_mps(self) -> Rows:
+        return self.outputs[SPEED_AT]
 
     @property
     def events(self) -> NDArray[np.int64]:
@@ -242,26 +263,36 @@ def random_commands(rng: np.random.Generator, steps: int, stale_ticks: float) ->
     }
 
 
-def random_drive(tick_hz: int, seed: int, steps: int, execution: object = compiled, **profile: object) -> Drive:
+def random_drive(
+    tick_hz: int, seed: int, steps: int, execution: object = compiled, every: int = EVERY, **profile: object
+) -> Drive:
     print(f"seed {seed}")
     s = settings(ControlProfile(**profile), 15.0, 0.6, 2.6, tick_hz)  # type: ignore[arg-type]
     rng = np.random.default_rng(seed)
     pieces = (random_inputs(rng, min(PIECE, steps - first), s.stale_ticks) for first in range(0, steps, PIECE))
-    return driven(pieces, steps, s, tick_hz, execution)
+    return driven(pieces, s, tick_hz, execution, every)
 
 
-def driven(pieces: Iterable[Rows], steps: int, s: ControlSettings, tick_hz: int, execution: object = compiled) -> Drive:
-    """Return the drive that all pieces are, one after the other; of their inputs only what somebody looks at."""
-    outputs, kept = np.empty((steps, OUTPUT_WIDTH)), np.empty((len(KEPT), steps))
+def driven(
+    pieces: Iterable[Rows], s: ControlSettings, tick_hz: int, execution: object = compiled, every: int = EVERY
+) -> Drive:
+    """Return the drive that all pieces are, one after the other, with the columns that somebody looks at.
+
+    Of its rows each `every`th is kept whole.
+    """
     before, vehicle_row, row = np.zeros(OUTPUT_WIDTH), np.zeros(EVENT_AT - VX + VX_SEEN), np.array(s)
-    columns, done = [COLUMNS.index(name) for name in KEPT], 0
+    columns = [COLUMNS.index(name) for name in GIVEN]
+    inputs, outputs, some, finite = [], [], [], True
     for piece in pieces:
-        now = slice(done, done + len(piece))
-        execution(drive)(piece, outputs[now], row, before, vehicle_row, 1.0 / tick_hz)  # type: ignore[operator]
-        kept[:, now] = piece[:, columns].T
-        done = now.stop
-    assert done == steps
-    return Drive(s, 1.0 / tick_hz, dict(zip(KEPT, kept, strict=True)), outputs)
+        rows = np.empty((len(piece), OUTPUT_WIDTH))
+        execution(drive)(piece, rows, row, before, vehicle_row, 1.0 / tick_hz)  # type: ignore[operator]
+        inputs.append(piece[:, columns].T)
+        outputs.append(rows[:, KEPT].T)
+        some.append(rows[::every].copy())
+        finite = finite and bool(np.isfinite(rows).all())
+    given = dict(zip(GIVEN, np.concatenate(inputs, axis=1), strict=True))
+    kept = dict(zip(KEPT, np.concatenate(outputs, axis=1), strict=True))
+    return Drive(s, 1.0 / tick_hz, given, kept, finite, np.concatenate(some))
 
 
 def calm_inputs(ticks: int, first: int = 0) -> Rows:
