@@ -81,13 +81,14 @@ def _ended(compiling: "subprocess.Popen[bytes]") -> None:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_collection() -> Generator[None, object, object]:
-    """Collect no garbage while there is none, and none of the tests ever: there are thousands, and they stay."""
-    gc.disable()
+    """Look for garbage seldom while tests are collected, and never among them: there are thousands, and they stay."""
+    often = gc.get_threshold()
+    gc.set_threshold(20_000, 20, 100)
     try:
         return (yield)
     finally:
         gc.freeze()
-        gc.enable()
+        gc.set_threshold(*often)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

@@ -12,7 +12,7 @@ from tests.drives.console import complaint, results, simconsole, within
 def test_a_video_shows_the_drive(short: Path, tmp_path: Path) -> None:
     path = tmp_path / "drive.mp4"
     words = ("--from", 1, "--to", 2, "--fps", 10, "--size", "640x480", "--out", path)
-    done = within("video", short, *words, "--json")
+    done = simconsole("video", short, *words, "--json")
     assert done.returncode == 0, done.stderr
     assert results(done) == {
         "video": str(path), "frames": 11, "fps": 10, "bytes": path.stat().st_size, "problems": [],
