@@ -7,7 +7,7 @@ from typing import NamedTuple
 from tests.drives.console import Running
 from tests.patience import pause
 
-LOOK_S = 0.02
+LOOK_S = 0.005
 
 
 class Private(NamedTuple):
