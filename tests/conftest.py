@@ -74,9 +74,12 @@ def pytest_xdist_setupnodes(config: pytest.Config) -> None:
 
 
 def _ended(compiling: "subprocess.Popen[bytes]") -> None:
-    """Leave no process behind."""
-    compiling.kill()
-    compiling.wait()
+    """Leave no process behind, and tell where it failed: its kernels were compiled by the tests."""
+    if compiling.poll() is None:
+        compiling.kill()
+        compiling.wait()
+    elif compiling.returncode:
+        sys.stderr.write(f"python -m tests.kernels ended with {compiling.returncode}\n")
 
 
 @pytest.hookimpl(wrapper=True)

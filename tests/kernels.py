@@ -4,20 +4,26 @@ What a process compiles it keeps: some 200 MB that who loads the same from the c
 meanwhile waits until this program has compiled it (`values/host/jit`).
 """
 
+import shutil
+import tempfile
+from pathlib import Path
 from typing import Final
 
 import numpy as np
 
-from simconsole.profiles.files.loader import parse
+from simconsole.profiles.files.loader import parse, profiles_folder
 from simconsole.profiles.session import SessionProfile
 from simconsole.session.lifecycle import warm_up
-from simconsole.session.resolution import resolve
+from simconsole.session.resolution import load_session, resolve
 from simconsole.tick.assembly import assemble
 from simconsole.values.host.jit import compiled
+from simconsole.vehicle.batch.fleet import Fleet
 from tests.control.oracle_rules import COUNT
 from tests.control.random_drives import SEED, random_drive
 from tests.control.test_walk import VARIANTS, walked
 from tests.control.walk import MODES
+from tests.vehicle.driving import platform as hatchback
+from tests.vehicle.fuzzing import on_tir
 
 SESSION: Final = """\
 schema: 1
@@ -35,6 +41,16 @@ TICKS: Final = (
 """Worlds and vehicles whose ticks are compiled each by itself."""
 
 
+def session_on_tir(folder: Path) -> Path:
+    """Write the session of a car on a PAC2002 tyre."""
+    vehicles = profiles_folder() / "vehicles"
+    shutil.copy(vehicles / "tyres" / "example.tir", folder)
+    (folder / "car.yaml").write_text((vehicles / "hatchback.yaml").read_text() + "tyre: {tir: example.tir}\n")
+    session = folder / "session.yaml"
+    session.write_text(SESSION.replace("WORLD", "urban").replace("VEHICLE", "car.yaml"))
+    return session
+
+
 def main() -> None:
     """Compile the tick of each platform, and what only tests of `control` call.
 
@@ -43,6 +59,10 @@ def main() -> None:
     for world, vehicle in TICKS:
         text = SESSION.replace("WORLD", world).replace("VEHICLE", vehicle)
         warm_up(*assemble(resolve(parse(text, SessionProfile, "session")), compiled))
+    with tempfile.TemporaryDirectory() as folder:
+        warm_up(*assemble(resolve(load_session(str(session_on_tir(Path(folder))))), compiled))
+    for platform in (on_tir(), hatchback()):
+        Fleet([platform] * 2).step(1)
     random_drive(50, SEED, 100)
     walked(VARIANTS[0], {}, 100, SEED, np.zeros(MODES * COUNT * COUNT))
 

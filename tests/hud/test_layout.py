@@ -1,7 +1,7 @@
 import subprocess
 import sys
-from functools import cache
 from itertools import combinations
+from typing import NamedTuple
 
 import pytest
 
@@ -17,15 +17,23 @@ from tests.hud.pictures import GERMAN, LARGE, SCREEN, SCREENS, asked, by_role, i
 every_screen = pytest.mark.parametrize("screen", [*SCREENS.values(), *LARGE.values()], ids=[*SCREENS, *LARGE])
 
 
-@cache
-def pictures(screen: Screen) -> list[list[DrawItem]]:
-    """What is drawn of every sample view, in both languages."""
-    return [list(layout(view, screen)) for view in [*sample_views(), *sample_views(GERMAN)]]
+class Drawn(NamedTuple):
+    """A screen, and what is drawn on it of every sample view, in both languages."""
+
+    screen: Screen
+    pictures: list[list[DrawItem]]
 
 
-@every_screen
-def test_nothing_is_within_five_percent_of_the_border(screen: Screen) -> None:
-    for items in pictures(screen):
+@pytest.fixture(scope="module", params=[*SCREENS.values(), *LARGE.values()], ids=[*SCREENS, *LARGE])
+def drawn(request: pytest.FixtureRequest) -> Drawn:
+    """One screen after the other: all at once are 160 MB."""
+    screen = request.param
+    return Drawn(screen, [list(layout(view, screen)) for view in [*sample_views(), *sample_views(GERMAN)]])
+
+
+def test_nothing_is_within_five_percent_of_the_border(drawn: Drawn) -> None:
+    screen = drawn.screen
+    for items in drawn.pictures:
         for item in items:
             box = bounds(item)
             if item.role == "ground":
@@ -36,10 +44,10 @@ def test_nothing_is_within_five_percent_of_the_border(screen: Screen) -> None:
             assert box.bottom <= 0.95 * screen.height_px, item
 
 
-@every_screen
-def test_every_text_is_large_enough_for_the_seat(screen: Screen) -> None:
+def test_every_text_is_large_enough_for_the_seat(drawn: Drawn) -> None:
+    screen = drawn.screen
     check_screen(screen, "hud", GERMAN)
-    for items in pictures(screen):
+    for items in drawn.pictures:
         for item in texts(items):
             assert item.arcmin in (16.0, 20.0, 60.0)
             assert item.cap_px / screen.px_per_arcmin >= item.arcmin
@@ -52,9 +60,8 @@ def test_every_text_is_large_enough_for_the_seat(screen: Screen) -> None:
                 assert item.arcmin >= 20.0
 
 
-@every_screen
-def test_no_two_texts_touch(screen: Screen) -> None:
-    for items in pictures(screen):
+def test_no_two_texts_touch(drawn: Drawn) -> None:
+    for items in drawn.pictures:
         placed = [(*bounds(item), item) for item in texts(items)]
         for (x, y, w, h, one), (other_x, other_y, other_w, other_h, other) in combinations(placed, 2):
             beside = x + w <= other_x or other_x + other_w <= x
