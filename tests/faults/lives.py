@@ -106,6 +106,15 @@ def holders(pipe: str) -> set[int]:
     return found
 
 
+def with_temporary(temporary: Path) -> dict[str, str]:
+    """The environment of a program whose temporary folder this is, for it alone.
+
+    The library of the sound server makes a folder there, and leaves it, where nothing else is said and the one that
+    this user has made before is gone: with that of another test, say.
+    """
+    return {"TMPDIR": str(temporary), "PULSE_RUNTIME_PATH": f"{temporary}-of-sound"}
+
+
 class Life:
     """A drive with a temporary folder of its own, whose processes can be told from all others'."""
 
@@ -115,7 +124,7 @@ class Life:
         self.temporary = temporary
         # Whoever runs the tests may ignore hang-ups (nohup), and a program inherits that.
         before = signal.signal(signal.SIGHUP, signal.SIG_DFL)
-        self.running = Running(folder, *words, **{MARK: self.mark, "TMPDIR": str(temporary)})
+        self.running = Running(folder, *words, **{MARK: self.mark, **with_temporary(temporary)})
         signal.signal(signal.SIGHUP, before)
         self.core = self.running.process.pid
 

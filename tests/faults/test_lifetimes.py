@@ -31,6 +31,7 @@ from tests.faults.lives import (
     standard_input,
     takes_signals,
     wait_for_port,
+    with_temporary,
     write_session,
 )
 from tests.patience import PATIENCE_S, Stopwatch, pause, wait_until
@@ -56,7 +57,7 @@ def next_drive_is_manual(folder: Path, port: int, seconds: float = 3.0, temporar
     wait_for_port(port)
     session = write_session(folder, port, autopilot=False, workers=False, report=False)
     command = ("drive", session, "--for", seconds, "--out", folder / "bundle", "--json", "--no-pack")
-    with Running(folder, *command, **({} if temporary is None else {"TMPDIR": str(temporary)})) as running:
+    with Running(folder, *command, **({} if temporary is None else with_temporary(temporary))) as running:
         done = running.end()
     assert done.returncode == 0, done.stderr
     assert modes_of(folder / "bundle").isdisjoint(BY_ANOTHER), "nobody may drive here but the person"
