@@ -19,8 +19,6 @@ from simconsole.world.tools.generate import to_text
 
 LINK = "{delay_ms: 40, localisation: {position_noise_m: 0.02, yaw_noise_deg: 0.2}}"
 NAMES = ("x_m", "y_m", "yaw_rad", "vx_mps", "distance_m")
-UNANSWERED_S = 10.0
-"""So long a drive waits for an autopilot that gives no commands, until it goes on without: it waits once."""
 PERSON = """points:
   - {time_s: 0.0, throttle: 0, brake: 0, clutch: 0, hand_wheel_deg: 0, gear: 0}
   - {time_s: 2.0, press: [autonomous]}
@@ -38,14 +36,7 @@ OPEN = CoursePlan(
 )
 
 
-def parked(
-    folder: Path,
-    start: str,
-    vehicle: str = "hatchback",
-    duration_s: float = 25.0,
-    faults: str = "[]",
-    answer_timeout_s: float = 60.0,
-) -> Path:
+def parked(folder: Path, start: str, vehicle: str = "hatchback", duration_s: float = 25.0, faults: str = "[]") -> Path:
     """Drive from `start` (YAML) with an autopilot that is asked for while the car stands; return the bundle."""
     world = solve(OPEN, "open")
     (folder / "course.yaml").write_text(to_text(world, "open"))
@@ -54,8 +45,7 @@ def parked(
         f"scenario: {{vehicle: {vehicle}, duration_s: {duration_s}, start: {start}, faults: {faults}}}\n"
         "features: {autopilot: course.yaml}\n"
         f"outputs: {{hud: null, scene: null, report: false, bridge: {{port: 0, link: {LINK}}}}}\n"
-        f"devices: {{driver: 'script:{folder / 'person.yaml'}'}}\n"
-        f"mode: {{pacing: lockstep, answer_timeout_s: {answer_timeout_s}}}\n"
+        f"devices: {{driver: 'script:{folder / 'person.yaml'}'}}\nmode: {{pacing: lockstep, answer_timeout_s: 60}}\n"
     )
     (folder / "person.yaml").write_text(PERSON)
     drive(resolve(load_session(str(folder / "session.yaml"))), folder / "bundle")
@@ -101,7 +91,7 @@ def test_a_car_that_stands_beside_the_lane_is_led_back(
 def test_too_far_from_the_course_there_are_no_commands_and_it_says_why(
     tmp_path: Path, capfd: pytest.CaptureFixture[str], start: str, said: str
 ) -> None:
-    bundle = parked(tmp_path, start, duration_s=5.0, answer_timeout_s=UNANSWERED_S)
+    bundle = parked(tmp_path, start, duration_s=5.0)
     table = open_bundle(bundle).log.table(COLUMNS)
     assert modes(bundle) - {Mode.PARKED} == {Mode.MANUAL}
     assert Reason.REFUSED_NO_COMMAND in table.column("arbitration.refusal")
