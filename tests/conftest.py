@@ -29,6 +29,7 @@ __all__ = ["checked", "demo", "measured", "module_sample", "once", "sample", "sc
 account: Final = Account()
 peaks: Final[list[memory.Peak]] = []
 """The largest process of the run, each time that a larger one was seen."""
+tidying: Final = memory.Tidying()
 
 # Where this is set (as in many containers), each of the hundreds of programs that the tests start would compile all
 # sources of this project anew, which takes as long as half of its imports; and each process of a run all tests.
@@ -80,6 +81,15 @@ def _ended(compiling: "subprocess.Popen[bytes]") -> None:
         compiling.wait()
     elif compiling.returncode:
         sys.stderr.write(f"python -m tests.kernels ended with {compiling.returncode}\n")
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_protocol(item: pytest.Item, nextitem: pytest.Item | None) -> Generator[None, object, object]:
+    """Give back what the tests of a file have left, after its last one."""
+    done = yield
+    if nextitem is None or nextitem.path != item.path:
+        tidying.after_file()
+    return done
 
 
 @pytest.hookimpl(wrapper=True)

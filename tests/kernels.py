@@ -13,7 +13,7 @@ import numpy as np
 
 from simconsole.profiles.files.loader import parse, profiles_folder
 from simconsole.profiles.session import SessionProfile
-from simconsole.session.lifecycle import warm_up
+from simconsole.session.lifecycle import drive, warm_up
 from simconsole.session.resolution import load_session, resolve
 from simconsole.tick.assembly import assemble
 from simconsole.values.host.jit import compiled
@@ -28,15 +28,17 @@ from tests.vehicle.fuzzing import on_tir
 SESSION: Final = """\
 schema: 1
 environment: {world: WORLD}
-scenario: {vehicle: VEHICLE}
+scenario: {vehicle: VEHICLE, duration_s: 0.1}
 devices: {driver: none}
+outputs: {report: false}
 mode: {tick_hz: 250, pacing: free}
 """
-TICKS: Final = (
+DRIVES: Final = (
     ("urban", "hatchback"),
-    ("urban_signals, traffic: {seed: 1}", "hatchback"),
+    ("urban_signals, traffic: {pedestrians: 5, seed: 1}", "hatchback"),
     ("country", "hatchback"),
     ("arena", "turtlebot3_burger"),
+    ("null", "ball"),
 )
 """Worlds and vehicles whose ticks are compiled each by itself."""
 
@@ -52,14 +54,16 @@ def session_on_tir(folder: Path) -> Path:
 
 
 def main() -> None:
-    """Compile the tick of each platform, and what only tests of `control` call.
+    """Compile what a drive of each platform calls, and what only tests of `control` call.
 
     What cannot be compiled fails in the tests as well, which tell it better.
     """
-    for world, vehicle in TICKS:
-        text = SESSION.replace("WORLD", world).replace("VEHICLE", vehicle)
-        warm_up(*assemble(resolve(parse(text, SessionProfile, "session")), compiled))
     with tempfile.TemporaryDirectory() as folder:
+        for number, (world, vehicle) in enumerate(DRIVES):
+            text = SESSION.replace("WORLD", world).replace("VEHICLE", vehicle)
+            resolved = resolve(parse(text, SessionProfile, "session"))
+            warm_up(*assemble(resolved, compiled), awaited=True)
+            drive(resolved, Path(folder) / str(number))
         warm_up(*assemble(resolve(load_session(str(session_on_tir(Path(folder))))), compiled))
     for platform in (on_tir(), hatchback()):
         Fleet([platform] * 2).step(1)

@@ -1,6 +1,11 @@
 """How much memory a run takes: the largest process, of those that run tests and of those that tests start."""
 
+import ctypes
+import gc
+import os
 import resource
+import sys
+from pathlib import Path
 from typing import Final, NamedTuple
 
 KEY: Final = "memory_mb"
@@ -24,3 +29,32 @@ def peak_mb() -> float:
     """Return the most memory that this process, or one that it has started and seen end, has had resident, in MB."""
     kib = max(resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
     return kib * 1024 / 1e6
+
+
+class Tidying:
+    """What tests have left behind is given back to the system once it may be much: see `after_file`."""
+
+    def __init__(self, worth_mb: float = 30.0) -> None:
+        """Look for it as often as the process has grown by `worth_mb`: it takes a moment."""
+        self.worth_mb = worth_mb
+        self._tidy_mb = 0.0
+
+    def after_file(self) -> None:
+        """Collect garbage, and give back what the allocator keeps for later.
+
+        What the tests of a file held in circles would else stay until the next search of all objects, which comes
+        after thousands of tests. Only where the allocator is that of glibc and its memory is known: Linux.
+        """
+        if sys.platform != "linux" or resident_mb() < self._tidy_mb + self.worth_mb:
+            return
+        gc.collect()
+        trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
+        if trim is not None:
+            trim(0)
+        self._tidy_mb = resident_mb()
+
+
+def resident_mb() -> float:
+    """Return the memory that this process has resident now, in MB. Linux only."""
+    pages = int(Path("/proc/self/statm").read_text().split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE") / 1e6

@@ -1,7 +1,9 @@
 import subprocess
 import sys
 
-from tests.memory import MOST_MB, Peak, peak_mb
+import numpy as np
+
+from tests.memory import MOST_MB, Peak, Tidying, peak_mb, resident_mb
 
 LARGE_MB = 300.0
 ALLOCATES = f"bytearray(int({LARGE_MB}e6))"
@@ -15,3 +17,22 @@ def test_the_memory_of_an_ended_child_is_seen() -> None:
 def test_the_line_tells_what_is_too_much() -> None:
     assert Peak(612.4, "a.py::b").line() == "memory: at most 612 MB in one process, in a.py::b"
     assert Peak(MOST_MB + 1.0, "a").line().endswith("in a, more than the 1000 MB that one may take")
+
+
+class Circle:
+    def __init__(self, size_mb: float) -> None:
+        self.held = np.ones(int(size_mb * 1e6 / 8))
+        self.itself = self
+
+
+def test_what_a_file_has_left_is_given_back_once_it_is_much() -> None:
+    tidying = Tidying(worth_mb=50.0)
+    tidying.after_file()
+    before_mb = resident_mb()
+    Circle(20.0)
+    tidying.after_file()
+    assert resident_mb() > before_mb + 15.0, "not worth the while"
+    Circle(80.0)
+    assert resident_mb() > before_mb + 90.0
+    tidying.after_file()
+    assert resident_mb() < before_mb + 15.0
