@@ -39,8 +39,13 @@ class Puppet(Node):  # type: ignore[misc]  # rclpy has no types here
         self._had: dict[tuple[str, str], Any] = {}
 
     def do(self, order: dict[str, Any]) -> None:
-        """Carry out one order: `do` names the method."""
-        getattr(self, "_do_" + order.pop("do"))(**order)
+        """Carry out one order: `do` names the method. What cannot be done is told: somebody may wait for it."""
+        what = order.pop("do")
+        try:
+            getattr(self, "_do_" + what)(**order)
+        except Exception as error:
+            say(failed=what, why=f"{type(error).__name__}: {error}")
+            raise
 
     def _keep(self, kind: str, name: str, make: Callable[[], Any]) -> Any:
         if (kind, name) not in self._had:

@@ -152,9 +152,11 @@ def node_step(node: Puppet, random: Random) -> None:
 
 
 def endpoints(node: Puppet) -> dict[str, list[str]]:
-    """What the console has in the graph, of this walk."""
+    """What the console has in the graph, of this walk; why it is not known where the node has lost sight of it."""
     node.do("list")
-    found = node.hear(lambda said: "subscriptions" in said)
+    found = node.hear(lambda said: "subscriptions" in said or said.get("failed") == "list")
+    if "failed" in found:
+        return {"failed": [found["why"]]}
     return {
         kind: sorted(name for name in names if "walk" in name or "nnnn" in name)
         for kind, names in found.items()
