@@ -18,20 +18,25 @@ SEGEL = (
     f"{NONE}"
 )
 PARKING = (
-    "assisted cars; makers let workshops find at most 6 N m [12], 7.8 N m [13], 29 N at the rim, 5.4 N m at 0.185 m "
-    f"[14]; the narrower range and its low end: {NONE}"
+    "assisted cars; makers let workshops find at most 6 N m [12], 7.8 N m [13], 29 to 34 N at the rim, 5.4 to 6.3 N m "
+    f"at 0.185 m [14], [20], [21]; the narrower range and its low end: {NONE}"
+)
+DIVE = (
+    "no published range found; the fronts of saloons dipped by 6 cm when they braked hard from 32 km/h [22], by "
+    "estimate 1.1 to 2 deg/g; engineering estimate"
 )
 BRAKES = (
     "about 500 tests of ADAC: mean 36.4 m, best of the Golf class 33.1 m, worst of the vans 47.8 m [15]; an older Golf "
-    "39.5 m [16]; the ends within that: engineering estimate"
+    "39.5 m [16]; large vans of 2003 and 2007 44 to 47.4 m, reckoned from other speeds [23], [24]; the ends within "
+    "that: engineering estimate"
 )
 PERFORMANCE = "cars: [1]; vans: [2]"
 TOP_SPEED = f"{PERFORMANCE}; the BMW 320i of 1990 itself: 214 km/h [17]"
 SINGLE_TRACK = "cars: [3] and [4], which measured 3.6 deg/g at 2.67 m; vans: no published range found, that of cars"
 CHARACTERISTIC = f"{SINGLE_TRACK}; taught as usual: 65 to 100 km/h [9]"
 ROADHOLDING = (
-    "two hatchbacks had 0.83 g [5], a tall estate on solid axles 7.05 m/s² [7]; the ranges around them: engineering "
-    "estimate"
+    "two hatchbacks had 0.83 g [5], a tall estate on solid axles 7.05 m/s² [7], the best of five large vans 0.78 g, "
+    "7.65 m/s² [24]; the ranges around them: engineering estimate"
 )
 ROLL = (
     "measured were 3.5 to 4.4 deg/g [6], [7]; called typical: small cars 5, large ones 7 deg/g [10]; the ranges "
@@ -40,9 +45,9 @@ ROLL = (
 TRANSIENT = "cars: single tracks of [3], [4] and [11], computed"
 RESPONSE = f"{TRANSIENT}; vans: up to the 0.28 s that a tall estate had at 43 km/h [7]"
 OVERSHOOT = f"{TRANSIENT}; vans: down to the 0.8 % of [7]"
-PEAK = f"{TRANSIENT}: 0.6 to 1 Hz; tyres and roll, which they lack, put it higher, and how much: {NONE}"
-GAIN = f"{TRANSIENT}; vans: {NONE}"
-LAG = f"{TRANSIENT}; vans: {NONE}"
+PEAK = f"{TRANSIENT}: 0.6 to 1 Hz, without tyres' lag and roll; cars: 1 to 1.5 Hz [18]; vans: {NONE}"
+GAIN = f"{TRANSIENT}; taught, for a speed that is not told: 1.26 to 1.58, the less the better damped [19]; vans: {NONE}"
+LAG = f"{TRANSIENT}; taught, for a speed that is not told: 20 to 40 deg [19]; vans: {NONE}"
 
 SOURCES = (
     "Cars of topgear.com on 24 February 2014, data set 'topgear' of github.com/STAN-UAntwerp/robpy: the eight "
@@ -73,6 +78,17 @@ SOURCES = (
     "autogazette.de, October 2016, and nachrichten-muenchen.de, on the brake tests of ADAC in four years.",
     "motor-talk.de, Der Golf-Kombi bremst besser als ein Audi R8: Golf IV of 2001, by ADAC.",
     "BMW Group Classic, BMW 320i (E36): bmwgroup-classic.com.",
+    "Daisharin, the encyclopedia of cars of San'ei Shobo, 2004, at weblio.jp: frequency response (handling).",
+    "bibble-babble.cocolog-nifty.com, 625. frequency response, 13 June 2015: passenger cars, 2 to 4 dB at the peak, "
+    "1 to 1.3 Hz.",
+    "Mitsubishi Outlander of 2014, workshop manual, steering force, 29 N: mitsubishi.automotive-manuals.com; Suzuki "
+    "Kizashi of 2010, 30 N: lemon-manuals.gy.",
+    "Hyundai Accent LC, check of effort on a steering wheel, 34.3 N: hyundaibook.ru.",
+    "D. Aylor and others, Limitations of Current Bumper Designs and Potential Improvements, SAE 2005-01-1337: mean of "
+    "the saloons.",
+    "trucktrend.com, comparison of minivans, 2003: 135 to 145 ft from 60 mph.",
+    "Car and Driver, November 2007, on the Nissan Quest, as blog.hondacarsrockhill.com quotes it on 5 December 2007: "
+    "the best of five minivans, 0.78 g and 186 ft from 70 mph.",
 )
 """Where ranges were read, in the order of their numbers."""
 
@@ -94,7 +110,7 @@ FIGURES = (
     Figure("0 to 100 km/h", "acceleration", "time_s", "s", (9.3, 12.6), (12.0, 19.2), PERFORMANCE),
     Figure("Top speed", "acceleration", "top_speed_kmh", "km/h", (185.0, 203.0), (152.0, 183.0), TOP_SPEED),
     Figure("Braking 100 to 0 km/h", "straight_braking", "stopping_distance_m", "m", (33.0, 42.0), (36.0, 47.8), BRAKES),
-    Figure("Dive", "brake_gently", "pitch_angle_gradient_deg_per_g", "deg/g", (1.0, 1.7), (1.0, 1.7), NONE),
+    Figure("Dive", "brake_gently", "pitch_angle_gradient_deg_per_g", "deg/g", (1.0, 1.7), (1.0, 1.7), DIVE),
     Figure(
         "Understeer gradient",
         "steady_state_circle",
