@@ -2,7 +2,7 @@
 
 Usage: python tests/interop/roslibpy_suite.py [FOLDER]. Without the folder of an unpacked sdist it is fetched from the
 package index and checked. The nodes that roslibpy's tests expect to find (an action server, a tf republisher, /rosout)
-are stood in for below; only the port in the tests is replaced.
+are stood in for below; only the port in the tests is replaced, and how long roslibpy waits (roslibpy_patience.py).
 """
 
 import asyncio
@@ -32,6 +32,9 @@ from simconsole.bridge.transport.server import BridgeServer
 from simconsole.profiles.bridge import BridgeProfile
 
 PATIENCE_S = 600.0  # of tests/patience.py, which this program cannot import: it ends only what hangs
+
+PLUGIN = "roslibpy_patience"
+"""Beside this file."""
 
 VERSION = "2.1.0"
 SHA256 = "05d2ec196dd2ff89c864418f7afeac4b01bff5679034c997a6b4d0c54775f352"
@@ -199,8 +202,10 @@ def run(tests: Path, transport: str, dialect: str, library: str) -> str:
         for path in tests.rglob("test_*.py"):
             path.write_text(re.sub(r"\b9090\b", str(server.port), path.read_text("utf-8")), "utf-8")
         environment = {**os.environ, "ROSLIBPY_TRANSPORT": transport}
-        words = ["-m", "pytest", "-q", "--timeout=60", "-p", "no:cacheprovider", "--import-mode=importlib"]
-        command = [sys.executable, *words, f"--rootdir={tests}", "-c", "/dev/null", dialect]
+        shutil.copy(Path(__file__).with_name(f"{PLUGIN}.py"), tests)  # -m makes modules of the folder importable
+        words = ["-m", "pytest", "-q", f"--timeout={PATIENCE_S:.0f}", "-p", "no:cacheprovider", "-p", PLUGIN]
+        more = ["--import-mode=importlib", f"--rootdir={tests}", "-c", "/dev/null", dialect]
+        command = [sys.executable, *words, *more]
         done = subprocess.run(command, cwd=tests, env=environment, capture_output=True, text=True)
         if done.returncode:
             print(done.stdout[-6000:])
