@@ -53,8 +53,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers() -> int:
-    """One process more than there are cores: there is always a test that waits."""
-    return (os.cpu_count() or 1) + 1
+    """Two processes more than there are cores: there are always tests that wait, and each keeps less in memory."""
+    return (os.cpu_count() or 1) + 2
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -84,11 +84,10 @@ def _ended(compiling: "subprocess.Popen[bytes]") -> None:
 
 
 @pytest.hookimpl(wrapper=True)
-def pytest_runtest_protocol(item: pytest.Item, nextitem: pytest.Item | None) -> Generator[None, object, object]:
-    """Give back what the tests of a file have left, after its last one."""
+def pytest_runtest_protocol() -> Generator[None, object, object]:
+    """Give back what tests have left."""
     done = yield
-    if nextitem is None or nextitem.path != item.path:
-        tidying.after_file()
+    tidying.after_test()
     return done
 
 

@@ -32,18 +32,18 @@ def peak_mb() -> float:
 
 
 class Tidying:
-    """What tests have left behind is given back to the system once it may be much: see `after_file`."""
+    """What tests have left behind is given back to the system once it may be much: see `after_test`."""
 
-    def __init__(self, worth_mb: float = 30.0) -> None:
-        """Look for it as often as the process has grown by `worth_mb`: it takes a moment."""
+    def __init__(self, worth_mb: float = 40.0) -> None:
+        """Do so as often as the process has grown by `worth_mb`: it takes a moment."""
         self.worth_mb = worth_mb
         self._tidy_mb = 0.0
 
-    def after_file(self) -> None:
+    def after_test(self) -> None:
         """Collect garbage, and give back what the allocator keeps for later.
 
-        What the tests of a file held in circles would else stay until the next search of all objects, which comes
-        after thousands of tests. Only where the allocator is that of glibc and its memory is known: Linux.
+        What tests held in circles would else stay until the next search of all objects, which comes after thousands of
+        tests. Only where the allocator is that of glibc and its memory is known: Linux.
         """
         if sys.platform != "linux" or resident_mb() < self._tidy_mb + self.worth_mb:
             return

@@ -1,7 +1,10 @@
+import gc
 import subprocess
 import sys
+from collections.abc import Iterator
 
 import numpy as np
+import pytest
 
 from tests.memory import MOST_MB, Peak, Tidying, peak_mb, resident_mb
 
@@ -19,20 +22,28 @@ def test_the_line_tells_what_is_too_much() -> None:
     assert Peak(MOST_MB + 1.0, "a").line().endswith("in a, more than the 1000 MB that one may take")
 
 
+@pytest.fixture
+def nobody_else_collects() -> Iterator[None]:
+    gc.disable()
+    yield
+    gc.enable()
+
+
 class Circle:
     def __init__(self, size_mb: float) -> None:
         self.held = np.ones(int(size_mb * 1e6 / 8))
         self.itself = self
 
 
-def test_what_a_file_has_left_is_given_back_once_it_is_much() -> None:
+@pytest.mark.usefixtures("nobody_else_collects")
+def test_what_tests_have_left_is_given_back_once_it_is_much() -> None:
     tidying = Tidying(worth_mb=50.0)
-    tidying.after_file()
+    tidying.after_test()
     before_mb = resident_mb()
     Circle(20.0)
-    tidying.after_file()
+    tidying.after_test()
     assert resident_mb() > before_mb + 15.0, "not worth the while"
     Circle(80.0)
     assert resident_mb() > before_mb + 90.0
-    tidying.after_file()
+    tidying.after_test()
     assert resident_mb() < before_mb + 15.0
