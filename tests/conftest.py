@@ -17,12 +17,14 @@ from functools import partial
 from typing import Final
 
 import pytest
+from xdist.remote import Producer
 
 from tests import long_run, memory
 from tests.account import Account
 from tests.drives.fixtures import checked, demo, once, script, short
 from tests.faults import figures
 from tests.samples import SAMPLED, draw_seed, measured, module_sample, sample
+from tests.scheduling import Stretches
 
 __all__ = ["checked", "demo", "measured", "module_sample", "once", "sample", "script", "short"]
 
@@ -60,6 +62,12 @@ def pytest_xdist_auto_num_workers() -> int:
 def pytest_configure(config: pytest.Config) -> None:
     """Settle the seed of the run: processes that run tests get the options as they are after this."""
     draw_seed(config)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> Stretches | None:
+    """Where files are kept whole, each process goes through those that lie beside each other."""
+    return Stretches(config, log) if config.getoption("dist") == "loadfile" else None
 
 
 @pytest.hookimpl(optionalhook=True)

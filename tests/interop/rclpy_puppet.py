@@ -65,7 +65,7 @@ class Puppet(Node):  # type: ignore[misc]  # rclpy has no types here
 
     def _do_stream(self, name: str, kind: str, hz: float) -> None:
         """Publish numbered pictures or clouds until the stream is destroyed; each byte of data is the number's last."""
-        publisher = self._keep("publisher", name, lambda: self.create_publisher(TYPES[kind], name, 10))
+        publisher = self._keep("publisher", name, lambda: self.create_publisher(TYPES[kind], name, QUEUE))
         numbers = itertools.count()
 
         def send() -> None:

@@ -2,18 +2,28 @@
 
 import base64
 import json
-from typing import Any
+from collections.abc import Iterator, Mapping
+from typing import Any, Final
 
 import cbor2
 import pytest
 
 from tests.interop.programs import Client
-from tests.interop.puppets import Puppet
+from tests.interop.puppets import Puppet, Served, puppet, served
 from tests.interop.ros2 import needs_ros2
 from tests.patience import PATIENCE_S, wait_until
 from tests.samples import Sample
 
 pytestmark = needs_ros2
+LATE: Final = 30
+"""Large messages that may wait: on a busy machine this side reads later than the node sends, and that loses nothing."""
+
+
+@pytest.fixture(scope="module")
+def sides(around: Mapping[str, str]) -> Iterator[tuple[Served, Puppet]]:
+    room = f"queued_bytes={2_000_000 * LATE}"
+    with served(around, "--limit", room) as console, puppet(around) as node:
+        yield console, node
 
 
 def wait_for_topic(web: Client, name: str) -> None:
@@ -94,7 +104,7 @@ def test_pictures_and_clouds_pass_ten_times_a_second(
 ) -> None:
     """640x480 in colour, and a cloud of 1 MB: all that was published since the first arrives, in order."""
     name = f"/large/{kind.lower()}/{compression.replace('-', '_')}"
-    web.say(op="subscribe", topic=name, type=f"sensor_msgs/msg/{kind}", compression=compression)
+    web.say(op="subscribe", topic=name, type=f"sensor_msgs/msg/{kind}", compression=compression, queue_length=LATE)
     node.do("stream", name=name, kind=kind, hz=10.0)
     count = sample.of(10, 20)
     heard = [number(web.web.recv(timeout=PATIENCE_S), compression) for _ in range(count)]
