@@ -18,13 +18,14 @@ from typing import Final
 
 import pytest
 from xdist.remote import Producer
+from xdist.workermanage import WorkerController
 
 from tests import long_run, memory
 from tests.account import Account
 from tests.drives.fixtures import checked, demo, once, script, short
 from tests.faults import figures
 from tests.samples import SAMPLED, draw_seed, measured, module_sample, sample
-from tests.scheduling import Stretches
+from tests.scheduling import Stretches, scheduler_of
 
 __all__ = ["checked", "demo", "measured", "module_sample", "once", "sample", "script", "short"]
 
@@ -131,6 +132,7 @@ def pytest_xdist_node_collection_finished(node: object, ids: Sequence[str]) -> N
 def pytest_runtest_teardown(item: pytest.Item) -> None:
     """Keep how large the processes were until here: the report of the teardown tells it to the process of the run."""
     item.user_properties.append((memory.KEY, memory.peak_mb()))
+    item.user_properties.append((memory.LEFT_KEY, tidying.left_mb))
 
 
 def pytest_runtest_logreport(report: pytest.TestReport) -> None:
@@ -140,6 +142,24 @@ def pytest_runtest_logreport(report: pytest.TestReport) -> None:
     for name, value in report.user_properties:
         if name == memory.KEY and isinstance(value, float) and value > (peaks[-1].memory_mb if peaks else 0.0):
             peaks.append(memory.Peak(value, report.nodeid))
+        if name == memory.LEFT_KEY and isinstance(value, float) and value > memory.LARGE_MB:
+            _retire(report)
+
+
+def _retire(report: pytest.TestReport) -> None:
+    """Let a process that has become large end soon; there is none but this one where tests run without xdist."""
+    node = getattr(report, "node", None)
+    scheduler = scheduler_of(node) if node is not None else None
+    if scheduler is not None:
+        scheduler.retire(node)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: WorkerController, error: object | None) -> None:
+    """Replace a process that has ended because it was large; xdist itself replaces one that died."""
+    scheduler = scheduler_of(node)
+    if scheduler is not None and error is None:
+        scheduler.replace(node)
 
 
 def pytest_internalerror(excrepr: object) -> None:

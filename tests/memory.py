@@ -9,8 +9,11 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 KEY: Final = "memory_mb"
+LEFT_KEY: Final = "left_mb"
 MOST_MB: Final = 1000.0
 """What one process may take, so that four of them run beside each other on a laptop of 8 GB."""
+LARGE_MB: Final = 750.0
+"""What tests may have left in a process that still gets new files: single tests take up to 200 MB for a while."""
 
 
 class Peak(NamedTuple):
@@ -37,6 +40,8 @@ class Tidying:
     def __init__(self, worth_mb: float = 40.0) -> None:
         """Do so as often as the process has grown by `worth_mb`: it takes a moment."""
         self.worth_mb = worth_mb
+        self.left_mb = 0.0
+        """What the tests so far have left, in MB."""
         self._tidy_mb = 0.0
 
     def after_test(self) -> None:
@@ -45,13 +50,16 @@ class Tidying:
         What tests held in circles would else stay until the next search of all objects, which comes after thousands of
         tests. Only where the allocator is that of glibc and its memory is known: Linux.
         """
-        if sys.platform != "linux" or resident_mb() < self._tidy_mb + self.worth_mb:
+        if sys.platform != "linux":
+            return
+        self.left_mb = resident_mb()
+        if self.left_mb < self._tidy_mb + self.worth_mb:
             return
         gc.collect()
         trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
         if trim is not None:
             trim(0)
-        self._tidy_mb = resident_mb()
+        self.left_mb = self._tidy_mb = resident_mb()
 
 
 def resident_mb() -> float:

@@ -1,7 +1,8 @@
 """Which process of a run gets which test file: each goes through a stretch of the tree of its own.
 
 Files beside each other import the same modules, load the same kernels and keep the same caches. Where all processes
-take turns at one list, each of them comes to hold all of that.
+take turns at one list, each of them comes to hold all of that. One that has become large all the same ends after the
+files that it has, and a fresh one takes its place.
 """
 
 from collections.abc import Collection, Sequence
@@ -14,13 +15,36 @@ from xdist.workermanage import WorkerController
 
 
 class Stretches(LoadFileScheduling):  # type: ignore[misc]  # xdist has no types
-    """xdist's scheduler of whole files, but for the order in which each process gets them."""
+    """xdist's scheduler of whole files, but for the order in which each process gets them and for how long it lives."""
 
     def __init__(self, config: pytest.Config, log: Producer) -> None:
         """Nobody has taken a file."""
         super().__init__(config, log)
         self._files: list[str] = []
         self._last: dict[WorkerController, int] = {}
+        self._retired: set[WorkerController] = set()
+
+    def retire(self, node: WorkerController) -> None:
+        """Give `node` no more files, if there are any: it ends after those that it has."""
+        if self.workqueue:
+            self._retired.add(node)
+            node.shutdown()
+
+    def replace(self, node: WorkerController) -> None:
+        """Start a process in the place of `node`, which has ended, if it was retired and there are files left."""
+        if node in self._retired and self.workqueue:
+            self.config.pluginmanager.getplugin("dsession")._clone_node(node)
+
+    def remove_node(self, node: WorkerController) -> str | None:
+        """Leave the stretch of `node`, and return the test in which it died, as xdist wants it."""
+        self._last.pop(node, None)
+        crashed: str | None = super().remove_node(node)
+        return crashed
+
+    def _reschedule(self, node: WorkerController) -> None:
+        """Give `node` its next file in time; not to one that still collects, for others do not wait for it."""
+        if node in self.registered_collections:
+            super()._reschedule(node)
 
     def _assign_work_unit(self, node: WorkerController) -> None:
         """Give `node` its next file."""
@@ -30,6 +54,12 @@ class Stretches(LoadFileScheduling):  # type: ignore[misc]  # xdist has no types
         self._last[node] = next_file(waiting, self._last.get(node), others)
         self.workqueue.move_to_end(self._files[self._last[node]], last=False)
         super()._assign_work_unit(node)
+
+
+def scheduler_of(node: WorkerController) -> Stretches | None:
+    """Return what schedules a process of this run, where it is ours."""
+    scheduler = node.config.pluginmanager.getplugin("dsession").sched
+    return scheduler if isinstance(scheduler, Stretches) else None
 
 
 def next_file(waiting: Sequence[bool], last: int | None, others: Collection[int]) -> int:

@@ -1,10 +1,34 @@
+import os
 import random
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 
 from tests.scheduling import next_file
 
+ROOT = Path(__file__).parents[1]
 FILES = 40
+CONFTEST = """\
+import os
+from tests.scheduling import Stretches, scheduler_of
+
+def pytest_xdist_make_scheduler(config, log):
+    return Stretches(config, log)
+
+def pytest_runtest_logreport(report):
+    if hasattr(report, "node"):
+        scheduler_of(report.node).retire(report.node)
+
+def pytest_testnodedown(node, error):
+    scheduler_of(node).replace(node)
+
+def pytest_runtest_teardown(item):
+    with open("ran", "a") as ran:
+        print(item.path.name, os.environ["PYTEST_XDIST_WORKER"], file=ran)
+"""
+TESTS = "def test_a(): pass\ndef test_b(): pass\ndef test_c(): pass\n"
 
 
 def test_who_has_begun_goes_on() -> None:
@@ -38,3 +62,19 @@ def test_each_file_is_taken_once_and_mostly_after_its_neighbour(processes: int, 
         taken.append(place)
     assert sorted(taken) == list(range(FILES))
     assert jumps <= FILES // 3
+
+
+def test_a_large_process_is_replaced_and_every_test_runs_once(tmp_path: Path) -> None:
+    """With a real xdist: here each process is too large after its first test."""
+    (tmp_path / "conftest.py").write_text(CONFTEST)
+    for file in range(6):
+        (tmp_path / f"test_{file}.py").write_text(TESTS)
+    words = [sys.executable, "-m", "pytest", "-n", "2", "--dist", "loadfile", "--no-loadscope-reorder", str(tmp_path)]
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST")}
+    run = subprocess.run(
+        words, cwd=tmp_path, env=environment | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True, check=False
+    )
+    assert "18 passed" in run.stdout, run.stdout + run.stderr
+    ran_by = dict(line.split() for line in (tmp_path / "ran").read_text().splitlines())
+    assert len(ran_by) == 6
+    assert len(set(ran_by.values())) > 2
