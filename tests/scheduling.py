@@ -26,7 +26,7 @@ class Stretches(LoadFileScheduling):  # type: ignore[misc]  # xdist has no types
 
     def retire(self, node: WorkerController) -> None:
         """Give `node` no more files, if there are any: it ends after those that it has."""
-        if self.workqueue:
+        if self.workqueue and node not in self._retired:
             self._retired.add(node)
             node.shutdown()
 
