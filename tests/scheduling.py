@@ -31,9 +31,11 @@ class Stretches(LoadFileScheduling):  # type: ignore[misc]  # xdist has no types
             node.shutdown()
 
     def replace(self, node: WorkerController) -> None:
-        """Start a process in the place of `node`, which has ended, if it was retired and there are files left."""
-        if node in self._retired and self.workqueue:
-            self.config.pluginmanager.getplugin("dsession")._clone_node(node)
+        """Let the process of `node`, which has no tests left, end if it was retired; start one for the files left."""
+        if node in self._retired:
+            node.gateway.exit()  # xdist keeps it until the end of the run
+            if self.workqueue:
+                self.config.pluginmanager.getplugin("dsession")._clone_node(node)
 
     def remove_node(self, node: WorkerController) -> str | None:
         """Leave the stretch of `node`, and return the test in which it died, as xdist wants it."""
