@@ -8,8 +8,10 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Final
 
-from scenariogeneration import xosc
+import pytest
 
+xosc: Final[Any] = pytest.importorskip("scenariogeneration.xosc", reason="scenariogeneration is not installed")
+"""Its generators. Where its libraries have no wheels (pyproject.toml) the tests that import this module are skipped."""
 STEP: Final = xosc.TransitionDynamics(xosc.DynamicsShapes.step, xosc.DynamicsDimension.time, 0)
 LINEAR: Final = xosc.TransitionDynamics(xosc.DynamicsShapes.linear, xosc.DynamicsDimension.time, 4)
 SMOOTH: Final = xosc.TransitionDynamics(xosc.DynamicsShapes.sinusoidal, xosc.DynamicsDimension.time, 4)

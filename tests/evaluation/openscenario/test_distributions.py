@@ -5,11 +5,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from scenariogeneration import xosc
 
 from simconsole.evaluation.openscenario.distributions import MOST_SETS, value_sets
 from simconsole.values.errors import ProfileError
-from tests.evaluation.openscenario.files import NAMED, file_of, mutated, single, span
+from tests.evaluation.openscenario.files import NAMED, file_of, mutated, single, span, xosc
 from tests.samples import Sample
 
 SETS = """

@@ -1,11 +1,10 @@
 """When an act comes: the edges of conditions, and what they become."""
 
 import pytest
-from scenariogeneration import xosc
 
 from simconsole.evaluation.openscenario.importing import imported
 from simconsole.values.errors import ProfileError
-from tests.evaluation.openscenario.files import UNDERSTOOD, brakes, by, written
+from tests.evaluation.openscenario.files import UNDERSTOOD, brakes, by, written, xosc
 
 
 @pytest.mark.parametrize(
