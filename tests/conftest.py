@@ -3,7 +3,7 @@
 A test that measures something keeps it with `record_property(NAME, TEXT)`; the figures stand above the summary line.
 A test of a case of the fault catalogue says which (`@pytest.mark.fault("P11")`) and keeps what it saw with `measured`.
 A random or long check takes its size and its seed from `sample` (tests/samples.py); `pytest --long` runs those whole
-and writes docs/long-run.md.
+and writes docs/long-run.md. One of Hypothesis prints with a failure what draws it again.
 """
 
 import datetime
@@ -16,6 +16,7 @@ from collections.abc import Generator, Sequence
 from functools import partial
 from typing import Final
 
+import hypothesis
 import pytest
 from xdist.remote import Producer
 from xdist.workermanage import WorkerController
@@ -38,6 +39,12 @@ tidying: Final = memory.Tidying()
 # sources of this project anew, which takes as long as half of its imports; and each process of a run all tests.
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
+# Hypothesis would judge each example, and how quickly it draws them, by the clock.
+hypothesis.settings.register_profile(
+    "any machine", deadline=None, print_blob=True, suppress_health_check=[hypothesis.HealthCheck.too_slow]
+)
+hypothesis.settings.load_profile("any machine")
 
 # A shell starts background jobs with SIGINT ignored, and nohup ignores SIGHUP; every program that a test starts would
 # inherit that: a Ctrl-C or a hang-up sent to it would be lost, however the tests themselves were started.

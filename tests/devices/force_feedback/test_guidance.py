@@ -6,7 +6,6 @@ from collections.abc import Callable
 import msgspec
 import pytest
 from hypothesis import given
-from hypothesis import settings as settings_of_test
 from hypothesis import strategies as st
 
 from simconsole.devices.force_feedback.force_settings import ForceSettings, force_settings
@@ -51,7 +50,6 @@ def test_no_gain_no_torque_and_no_authority_no_guidance() -> None:
 FAST = compiled(guidance)
 
 
-@settings_of_test(deadline=None)  # the first call compiles
 @given(NUMBERS, NUMBERS, NUMBERS, NUMBERS, st.floats(0.0, 1.0), st.floats(0.0, 1.0))
 def test_guidance_is_bounded_odd_and_equal_in_both_executions(
     rad: float, slow: float, at: float, rate: float, rolling: float, share: float

@@ -9,7 +9,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -91,7 +91,6 @@ def test_the_log_comes_back_byte_for_byte(pair: tuple[LogReader, PackedLog]) -> 
     assert b"".join(pair[1].log_bytes()) == pair[0].path.read_bytes()
 
 
-@settings(deadline=None)
 @given(
     arrays(np.int64, (50, 4), elements=st.integers(-(1 << 63), (1 << 63) - 1)),
     st.sampled_from([Plain(), Coded(0), Coded(3), Coded(7)]),
