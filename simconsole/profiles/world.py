@@ -143,13 +143,23 @@ MapName = Annotated[str, worded(r"^.{1,1000}\.xml(\.gz)?$", "a file that ends in
 Digest = Annotated[str, worded(r"^[0-9a-f]{64}$", "a SHA-256 as 64 digits of 0-9a-f")]
 
 
-class MapFile(WorldSection, frozen=True, kw_only=True):
+class MapFile(WorldSection, frozen=True, kw_only=True, eq=False):
     """A file of the map: in the folder of the profile, or that of the drive, which has it compressed."""
 
     name: MapName
     """Name of the file, in the folder of the profile or of the drive, which has it compressed."""
     sha256: Digest | None = None
     """SHA-256 of the uncompressed text; a recorded drive has it."""
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether the content is the same, wherever it lies: a drive's report finds the world driven in."""
+        return isinstance(other, MapFile) and self._content() == other._content()
+
+    def __hash__(self) -> int:
+        return hash(self._content())
+
+    def _content(self) -> str:
+        return self.sha256 or self.name
 
 
 class RouteByEdges(WorldSection, frozen=True, kw_only=True, tag_field="by", tag="edges"):
