@@ -11,8 +11,9 @@ from simconsole.world.path_geometry import Piece
 from simconsole.world.route import Route, Stretch, Turn
 from tests.samples import Sample
 
-URBAN = open_world(load_world("urban")).route
-SIGNALS = open_world(load_world("urban_signals")).route
+
+def route_of(world: str) -> Route:
+    return open_world(load_world(world)).route
 
 
 def straight(*turns: Turn) -> Guidance:
@@ -45,20 +46,22 @@ def test_nobody_beside_the_route_or_against_it_is_told_to_turn() -> None:
 
 
 def test_a_loop_begins_anew() -> None:
-    guidance = guidance_of(URBAN)
-    (turn,) = URBAN.turns
-    at = URBAN.at(2500.0)
+    urban = route_of("urban")
+    guidance = guidance_of(urban)
+    (turn,) = urban.turns
+    at = urban.at(2500.0)
     found, place = ahead(guidance, at.x_m, at.y_m, at.yaw_rad, 2495.0)
     assert found is not None
     assert found.distance_m == pytest.approx(turn.s_m + 100.0, abs=1.0)
-    start = URBAN.at(1.0)
+    start = urban.at(1.0)
     again, _ = ahead(guidance, start.x_m, start.y_m, start.yaw_rad, place)
     assert again is not None
     assert again.distance_m == pytest.approx(turn.s_m - 1.0, abs=1.0)
 
 
-@pytest.mark.parametrize("route", [URBAN, SIGNALS], ids=["urban", "urban_signals"])
-def test_distances_are_those_of_the_route(route: Route, sample: Sample) -> None:
+@pytest.mark.parametrize("world", ["urban", "urban_signals"])
+def test_distances_are_those_of_the_route(world: str, sample: Sample) -> None:
+    route = route_of(world)
     guidance = guidance_of(route)
     assert len(guidance.points) < route.length_m / 10.0
     turn = route.turns[0]

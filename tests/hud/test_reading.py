@@ -8,7 +8,7 @@ from simconsole.hud.guidance import guidance_of
 from simconsole.hud.reading import HudReading
 from simconsole.hud.view import HudSettings
 from simconsole.values.signals import Event, Mode, Notice, Reason
-from tests.hud.test_guidance import URBAN
+from tests.hud.test_guidance import route_of
 from tests.hud.test_view import TICK_HZ, snapshot
 
 SETTINGS = HudSettings(takeover_window_s=10.0, hand_wheel_per_road_wheel=15.0)
@@ -53,11 +53,12 @@ def test_a_pause_says_so() -> None:
 
 
 def test_the_next_turn_and_the_lanes_limit_are_told() -> None:
-    reading = HudReading(SETTINGS._replace(guidance=guidance_of(URBAN)))
-    at = URBAN.at(900.0)
+    urban = route_of("urban")
+    reading = HudReading(SETTINGS._replace(guidance=guidance_of(urban)))
+    at = urban.at(900.0)
     place: dict[str, Any] = {"vehicle__x_m": at.x_m, "vehicle__y_m": at.y_m, "vehicle__yaw_rad": at.yaw_rad}
     read = reading(snapshot(**place, situation__lane=4.0, situation__speed_limit_mps=30.0 / 3.6))
-    (turn,) = URBAN.turns
+    (turn,) = urban.turns
     assert read["turn_distance"] == pytest.approx(turn.s_m - 900.0, abs=1.0)
     assert (read["turn_angle"], read["turn_exit"], read["turn_ends"]) == (turn.angle_rad, turn.exit, False)
     assert read["speed_limit"] == pytest.approx(30.0 / 3.6)

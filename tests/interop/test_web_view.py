@@ -18,7 +18,6 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
-from matplotlib.image import imread
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection
 
@@ -372,6 +371,8 @@ def axle_yaw(turn: list[float]) -> float:
 
 def shows_a_road(png: bytes, folder: Path) -> None:
     """Sky above, asphalt below, and much in between; not one colour everywhere."""
+    from matplotlib.image import imread
+
     path = folder / "web_view.png"
     path.write_bytes(png)
     pixels = np.rint(255.0 * imread(path)[:, :, :3]).astype(int)

@@ -23,11 +23,11 @@ SETS = """
 
 def written(folder: Path, *axes: tuple[str, Any]) -> bytes:
     """A file by scenariogeneration."""
-    found = xosc.Deterministic()
+    found = xosc().Deterministic()
     for name, axis in axes:
         found.add_single_distribution(name, axis)
     path = folder / "values.xosc"
-    xosc.ParameterValueDistribution("values", "nobody", "cut_in.xosc", found).write_xml(str(path))
+    xosc().ParameterValueDistribution("values", "nobody", "cut_in.xosc", found).write_xml(str(path))
     return path.read_bytes()
 
 
@@ -41,10 +41,10 @@ def refusal(content: bytes) -> str | None:
 
 
 def test_every_combination_comes_in_the_order_of_the_file(tmp_path: Path) -> None:
-    speeds = xosc.DistributionSet()
+    speeds = xosc().DistributionSet()
     speeds.add_value("6")
     speeds.add_value("8")
-    content = written(tmp_path, ("speed", speeds), ("gap", xosc.DistributionRange(0.1, xosc.Range(0, 0.3))))
+    content = written(tmp_path, ("speed", speeds), ("gap", xosc().DistributionRange(0.1, xosc().Range(0, 0.3))))
     found = value_sets(content, "values.xosc")
     gaps = ["0", "0.1", "0.2", "0.3"]
     assert found == [{"speed": speed, "gap": gap} for speed in ("6", "8") for gap in gaps]

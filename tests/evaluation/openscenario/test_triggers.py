@@ -17,7 +17,7 @@ from tests.evaluation.openscenario.files import UNDERSTOOD, brakes, by, written,
     ],
 )
 def test_an_edge_that_no_trigger_has_is_refused(name: str, edge: str, told: str) -> None:
-    slow = xosc.SpeedCondition(5, xosc.Rule.lessThan)
+    slow = xosc().SpeedCondition(5, xosc().Rule.lessThan)
     content = written(brakes(), by(slow)) if name == "a speed below" else UNDERSTOOD[name]()
     before = b"none" if name == "a condition and a time" else b"rising"
     assert imported(content, "made.xosc").profile.actors[0].acts

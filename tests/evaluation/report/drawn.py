@@ -2,12 +2,12 @@
 
 from typing import Any
 
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
-
 
 def blank() -> Any:
     """Return a figure that nothing has been drawn on."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
     figure = Figure()
     FigureCanvasAgg(figure)
     return figure
