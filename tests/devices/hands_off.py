@@ -23,6 +23,7 @@ from simconsole.values.signals import NO_COMMAND, NO_EVENTS
 from simconsole.values.state_vector import Snapshot, TickInputs, input_vector
 from simconsole.vehicle.rim_stiffness import rim_stiffness
 from tests.paths import ROOT
+from tests.samples import Sample
 
 TICK_HZ = 250
 FAST_MPS = 53.0
@@ -58,6 +59,12 @@ def draws(rng: np.random.Generator, count: int) -> list[Draw]:
         Draw(2.0 ** (2.0 * a - 1.0), 2.0 ** (2.0 * b - 1.0), 0.03 + 0.27 * c, 5 + int(27.999 * d))
         for a, b, c, d in zip(*shuffled, strict=True)
     ]
+
+
+def wheels(sample: Sample) -> list[Draw]:
+    """Return the shipped wheel, and corners of that range: one that is drawn, or all of them with 60 between them."""
+    rng = np.random.default_rng(sample.seed)
+    return [Draw(), *(ENDS if sample.long else [ENDS[rng.integers(len(ENDS))]]), *draws(rng, sample.of(0, 60))]
 
 
 def true_force(shipped: ForceFeedback, draw: Draw) -> ForceFeedback:

@@ -23,6 +23,7 @@ from tests.devices.hands_off import (
     session_of,
     swings,
     true_force,
+    wheels,
 )
 from tests.samples import Sample
 from tests.vehicle.shipped import SHIPPED
@@ -62,9 +63,8 @@ def test_every_swing_is_at_most_half_the_last(
     assert start is not None
     assert start.speed_mps >= 0.95 * speed_kmh / 3.6
     assert 0.95 * lateral_mps2 <= start.lateral_mps2 <= 4.0
-    rng = np.random.default_rng(sample.seed)
     worst = share = 0.0
-    for draw in (Draw(), *ENDS[:: sample.of(15, 1)], *draws(rng, sample.of(1, 60))):
+    for draw in wheels(sample):
         released = let_go(vehicle, start, true_force(shipped, draw), found_force(shipped, draw))
         worst = max(worst, worst_ratio(released))
         assert worst <= 0.5, (draw, released.swings_deg)
@@ -97,7 +97,7 @@ def test_bmw_comes_to_rest_up_to_its_own_top_speed(speed_kmh: int, shipped: Forc
 def test_slow_car_never_swings_up(vehicle: str, speed_kmh: int, shipped: ForceFeedback, sample: Sample) -> None:
     start = bend(vehicle, speed_kmh, 3.9)
     assert start is not None
-    for draw in (Draw(), *ENDS[:: sample.of(15, 1)], *draws(np.random.default_rng(sample.seed), sample.of(1, 60))):
+    for draw in wheels(sample):
         released = let_go(vehicle, start, true_force(shipped, draw), found_force(shipped, draw))
         ways_deg = swings(np.degrees(released.rad), SWING_DEG)  # a halt on the way back is no swing
         assert all(late <= early for early, late in pairwise(ways_deg)), (draw, ways_deg)

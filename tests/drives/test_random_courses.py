@@ -11,7 +11,7 @@ from tests.samples import Sample
 
 NOISE = "position_noise_m: 0.02, yaw_noise_deg: 0.2"
 DRIFT = "position_drift_m: 0.3, yaw_drift_deg: 0.3"
-CARS = (("hatchback", 12, 50), ("light_van", 2, 50), ("commonroad_bmw320i", 2, 50))
+CARS = (("hatchback", 5, 50), ("light_van", 2, 50), ("commonroad_bmw320i", 2, 50))
 PLAIN = ("pure_pursuit", "stanley")
 
 

@@ -12,8 +12,8 @@ from tests.samples import Sample
 
 
 def plan_of(folder: Path, sample: Sample) -> Path:
-    """30 drives of 20 s, or 1,000."""
-    seconds, rows = 20.0, sample.of(3, 100)
+    """20 drives of 20 s, or 1,000."""
+    seconds, rows = 20.0, sample.of(2, 100)
     low = 0.2 + sample.seed % 1000 / 5000.0
     values = {
         "environment.friction": {"from": low, "to": 1.0, "count": rows},
@@ -23,7 +23,7 @@ def plan_of(folder: Path, sample: Sample) -> Path:
 
 
 def test_every_engine_writes_the_same_file_and_a_killed_sweep_goes_on(tmp_path: Path, sample: Sample) -> None:
-    plan, count = plan_of(tmp_path, sample), sample.of(30, 1000)
+    plan, count = plan_of(tmp_path, sample), sample.of(20, 1000)
     patience_s = sample.of(1, 10) * PATIENCE_S
     here = patient(patience_s, "sweep", plan, "--jobs", 2, "--out", tmp_path / "here", "--json")
     assert here.returncode == 0, here.stderr
