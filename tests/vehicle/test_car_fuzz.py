@@ -13,7 +13,7 @@ from . import fuzzing
 def test_millions_of_steps_of_anything_stay_physical_and_end_at_rest(
     record_property: Callable[[str, object], None], sample: Sample
 ) -> None:
-    steps = sample.of(2_000_000, 100_000_000)
+    steps = sample.of(1_000_000, 100_000_000)
     subject = fuzzing.SUBJECTS["hatchback"]
     found = fuzzing.fuzz(steps, sample.seed, subject._replace(cars=sample.of(128, subject.cars)))
     record_property("car, fuzzed steps", f"{found.steps} in {found.cpu_s:.1f} s CPU, rest {found.rest_mps:.1e} m/s")
