@@ -19,6 +19,8 @@ def triangulate(polygon: Array) -> Indices:
     one (Meisters 1975). If the outline crosses itself and no ear is left, the rest is drawn as a fan.
     """
     points: list[list[float]] = polygon.tolist()
+    if len(points) == 4 and _is_convex(points):  # most of what is drawn of a road: its strips
+        return np.array(((3, 0, 1), (1, 2, 3)), dtype=np.uint32)
     left = list(range(len(points)))
     x, y = polygon.T.copy()
     turn = 1.0 if _area2(polygon) >= 0.0 else -1.0
@@ -41,6 +43,12 @@ def triangulate(polygon: Array) -> Indices:
             at, misses = at + 1, misses + 1
     triangles += [(left[0], left[i], left[i + 1]) for i in range(1, len(left) - 1)]
     return np.array(triangles, dtype=np.uint32).reshape(-1, 3)
+
+
+def _is_convex(points: list[list[float]]) -> bool:
+    """Return whether a polygon of four corners turns the same way at each of them."""
+    turns = [_corner2(points[at - 2], points[at - 1], points[at]) for at in range(len(points))]
+    return min(turns) > FLAT_M2 or max(turns) < -FLAT_M2
 
 
 def _area2(points: Array) -> float:

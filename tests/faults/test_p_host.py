@@ -89,7 +89,7 @@ for words in sys.argv[1:]:
 def littered(*drives: tuple[int, int]) -> list[dict[str, Any]]:
     """Drives of so many ticks with so many bytes of garbage, one after the other in one process."""
     words = [f"{ticks},{garbage_bytes}" for ticks, garbage_bytes in drives]
-    done = subprocess.run([sys.executable, "-c", LITTERED, *words], capture_output=True, text=True, timeout=250)
+    done = subprocess.run([sys.executable, "-c", LITTERED, *words], capture_output=True, text=True, timeout=PATIENCE_S)
     assert done.returncode == 0, done.stderr
     return [json.loads(line) for line in done.stdout.splitlines()]
 

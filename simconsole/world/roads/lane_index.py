@@ -113,14 +113,15 @@ def _grid(segments: Array) -> tuple[Array, NDArray[np.int64], NDArray[np.int64]]
     end = start + segments[:, 2:4] * segments[:, 4:5]
     low = np.minimum(start, end).min(axis=0) - 1.0
     size = np.floor((np.maximum(start, end).max(axis=0) - low) / CELL_M).astype(np.int64) + 1
-    cells: list[NDArray[np.int64]] = []
-    items: list[NDArray[np.int64]] = []
-    for number, (one, other) in enumerate(zip(start, end, strict=True)):
-        touched = _touched(one, other, low, size)
+    first, last = (np.floor((side(start, end) - low) / CELL_M).astype(np.int64) for side in (np.minimum, np.maximum))
+    within = (first == last).all(axis=1)  # one cell, as most segments
+    cells, items = [first[within] @ (1, size[0])], [np.flatnonzero(within)]
+    for number in np.flatnonzero(~within).tolist():
+        touched = _touched(start[number], end[number], low, size)
         cells.append(touched)
         items.append(np.full(len(touched), number))
     cell, item = np.concatenate(cells), np.concatenate(items)
-    order = np.argsort(cell, kind="stable")
+    order = np.lexsort((item, cell))
     starts = np.searchsorted(cell[order], np.arange(int(size.prod()) + 1))
     return np.array((*low, *size), dtype=np.float64), starts.astype(np.int64), item[order]
 
