@@ -17,7 +17,7 @@ from simconsole.values.platform import Platform
 from simconsole.values.signals import FAR, AheadInput, ImpactInput, VehicleState
 from simconsole.values.state_vector import LAYOUT, Snapshot
 from simconsole.values.trigonometry import direction
-from simconsole.world.kinds.worlds import open_map, open_world
+from simconsole.world.kinds.worlds import open_world
 from simconsole.world.roads.road_map import Array
 from simconsole.world.roads.road_world import Roads, roads_of
 from simconsole.world.roads.running import NONE_RUNNING
@@ -252,7 +252,7 @@ def open_traffic(resolved: ResolvedSession, console: Console, run_folder: Path |
         owing = Owing(roads.road_map, roads.legs, route, console.tick_hz, sumo.signals.state)
         return TrafficSource(sumo, platform, period_ticks, route, owing, signals_of(roads, console, sumo.signals))
     traffic = Traffic(
-        open_map(roads_profile),
+        roads.road_map,
         profile,
         compiled,
         route=route,
