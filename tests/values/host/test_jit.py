@@ -1,5 +1,6 @@
 """The twin: what it compiles, what its cache depends on, what it refuses."""
 
+import dis
 import gc
 import math
 import os
@@ -17,7 +18,7 @@ import pytest
 from numba.core.codegen import CPUCodeLibrary
 
 from simconsole.values.host import jit
-from simconsole.values.host.jit import compiled, digest, plain
+from simconsole.values.host.jit import compiled, digest, global_names, plain
 from simconsole.values.kernels import Row, holding, kernel, stage
 from simconsole.values.layout import Part, read
 from tests.paths import ROOT
@@ -200,6 +201,18 @@ def test_digest_follows_records_that_a_kernel_is_only_given() -> None:
         edited = altered(reach)
         edited.__annotations__ = {**reach.__annotations__, "placed": record}
         assert digest(edited) != before
+
+
+@pytest.mark.parametrize("modules", [vars(jit), vars(types), vars(dis)], ids=["jit", "types", "dis"])
+def test_globals_are_those_that_python_itself_tells(modules: dict[str, Any]) -> None:
+    for function in (value for value in modules.values() if isinstance(value, types.FunctionType)):
+        told = [step.argval for step in dis.get_instructions(function) if step.opname == "LOAD_GLOBAL"]
+        assert list(global_names(function.__code__)) == told
+
+
+def test_globals_beyond_the_256th_name_are_told() -> None:
+    names = [f"name_{number}" for number in range(70_000)]
+    assert list(global_names(compile(f"lambda: ({', '.join(names)})", "", "eval").co_consts[0])) == names
 
 
 def test_digest_is_the_same_in_another_process() -> None:
