@@ -11,7 +11,6 @@ import sys
 import traceback
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, redirect_stdout
-from importlib import import_module
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -30,6 +29,7 @@ from simconsole.processes.lifetimes import (
     interrupted,
 )
 from simconsole.values.errors import SimConsoleError, one_line
+from simconsole.values.host.loading import loaded
 from simconsole.values.version import __version__
 
 _AT_ONCE = ("demo", "drive", "bridge", "report", "view", "pack", "unpack")
@@ -95,7 +95,7 @@ def _outcome(options: argparse.Namespace) -> Outcome:
     module, function = options.does.split(":")
     try:
         with _out_of_the_results(options):
-            outcome: Outcome = getattr(import_module(f"simconsole.cli.{module}"), function)(options)
+            outcome: Outcome = getattr(loaded(f"simconsole.cli.{module}"), function)(options)
             return outcome
     except SimConsoleError as error:
         said, code, trace = str(error), error.exit_code, traceback.format_exc()

@@ -3,7 +3,6 @@
 Run as `python -m simconsole.processes worker`, with a `WorkerCall` as one line of JSON on standard input.
 """
 
-import importlib
 import signal
 import sys
 from collections.abc import Callable
@@ -15,6 +14,7 @@ import msgspec
 from simconsole.processes.lifetimes import follow_parent, read_told
 from simconsole.processes.notices import NoticeWriter, log_notices
 from simconsole.values.errors import SimConsoleError, WorkerError, one_line
+from simconsole.values.host.loading import loaded
 
 
 class Worker(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -62,7 +62,7 @@ def load_worker(spec: WorkerSpec) -> Worker:
     """
     module, _, kind = spec.target.partition(":")
     try:
-        worker: Any = msgspec.json.decode(spec.configuration, type=getattr(importlib.import_module(module), kind))
+        worker: Any = msgspec.json.decode(spec.configuration, type=getattr(loaded(module), kind))
     except (ImportError, AttributeError, msgspec.MsgspecError) as error:
         raise WorkerError(f"worker {spec.name}: {spec.target} cannot be loaded: {error}") from None
     if not isinstance(worker, Worker):

@@ -13,6 +13,7 @@ from simconsole.evaluation.report.figure_panels import draw_panels
 from simconsole.evaluation.report.figure_traces import draw_traces
 from simconsole.evaluation.report.figure_words import panels_words
 from simconsole.evaluation.report.frame import picture
+from simconsole.values.host.loading import loaded
 from simconsole.world.route import Route
 
 STYLE: Final[Any] = {
@@ -66,6 +67,7 @@ def panels_picture(name: str, title: str, panels: tuple[Panel, ...]) -> str:
 
 def figure(size_inch: tuple[float, float], draw: Callable[[Any], None]) -> Any:
     """Return a figure of matplotlib in the style of the reports; `draw` puts the axes in. Notebooks show it as SVG."""
+    loaded("matplotlib.backends.backend_svg")
     from matplotlib import rc_context
     from matplotlib.backends.backend_svg import FigureCanvasSVG
     from matplotlib.figure import Figure
@@ -84,6 +86,7 @@ def figure(size_inch: tuple[float, float], draw: Callable[[Any], None]) -> Any:
 
 
 def _svg(name: str, size_inch: tuple[float, float], draw: Callable[[Any], None]) -> str:
+    loaded("matplotlib.backends.backend_svg")
     from matplotlib import rc_context
 
     # The salt makes the identifiers inside equal in every run, and different between the figures of one page.

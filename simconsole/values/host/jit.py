@@ -25,6 +25,7 @@ import numpy as np
 
 from simconsole.values.host import lowering
 from simconsole.values.host.files import held_alone
+from simconsole.values.host.loading import loaded
 from simconsole.values.kernels import foreseen, forget, is_kernel, is_stage
 from simconsole.values.layout import Part, read, write
 
@@ -371,6 +372,6 @@ def _prune(base: Path) -> None:
 
 @cache
 def _numba() -> Any:
-    numba: Any = import_module("numba")
+    numba: Any = loaded("numba")
     lowering.teach()
     return numba
