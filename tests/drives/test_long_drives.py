@@ -53,7 +53,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory, module_sample: Sample) -> Pa
     """A drive of which a quarter is like the whole: by the autopilot, but for the beginning."""
     folder = tmp_path_factory.mktemp("whole")
     (folder / "session.yaml").write_text(SESSION)
-    words = ("--for", module_sample.of(60, 260), "--out", folder / "bundle", "--no-pack")
+    words = ("--for", module_sample.of(100, 260), "--out", folder / "bundle", "--no-pack")
     done = simconsole("drive", folder / "session.yaml", *words)
     assert done.returncode == 0, done.stderr
     return folder / "bundle"
