@@ -17,7 +17,7 @@ from simconsole.bridge.transport.server import BridgeServer
 from simconsole.bridge.transport.sockets import is_unacknowledged
 from simconsole.profiles.bridge import BridgeLimits, BridgeProfile
 from simconsole.values.signals import Event
-from tests.bridge.networks import CLOSE, Chaos, Raw, far_end, go_deaf, lose
+from tests.bridge.networks import CLOSE, PING, PONG, Chaos, Raw, far_end, go_deaf, lose
 from tests.patience import PATIENCE_S, stamp_ns, until
 from tests.samples import Measured
 
@@ -254,6 +254,9 @@ def test_n05_slow_reader_gets_the_newest(serving: Callable[..., Any]) -> None:
         while newest < 1999:
             received = slow.receive()
             assert received is not None
+            if received[0] == PING:  # it took long
+                slow.send(PONG, received[1])
+                continue
             operation = json.loads(received[1])
             if operation["op"] == "publish":
                 number = int(operation["msg"]["data"].split()[0])

@@ -238,7 +238,8 @@ def test_what_the_autopilot_planned_is_recorded_and_shown(disturbed: Disturbed) 
     plans = list(recorded_plans(open_bundle(disturbed.bundle).log))
     assert len(plans) > 5
     told_s = np.array([plan.t_ns for plan in plans]) / 1e9
-    assert (np.diff(told_s) > 0.1).all(), "five in a second"
+    assert (np.diff(told_s) > 0.0).all()
+    assert len(plans) <= 5.0 * (told_s[-1] - told_s[0]) + 2, "five in a second; each may be late by itself"
     ticks = disturbed.table.ticks
     x_m, y_m = (disturbed.table.column(f"vehicle.{axis}_m") for axis in "xy")
     for at_s, plan in zip(told_s, plans, strict=True):
