@@ -74,7 +74,7 @@ def _built(part: Part[Any], values: list[float], start: int) -> Any:
 
 def write(row: Row, part: Part[R], record: R) -> None:
     """Write a record to its place in a vector."""
-    row[part.start : part.stop] = tuple(_floats(record))
+    row[part.start : part.stop] = tuple(_floats(record)) if part.inner else record
 
 
 def _floats(record: tuple[Any, ...]) -> Iterator[float]:

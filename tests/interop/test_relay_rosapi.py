@@ -1,5 +1,6 @@
 """rosapi says what there is in a real graph, and does to it what it says."""
 
+import os
 import signal
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
@@ -94,6 +95,7 @@ def test_a_node_that_does_not_answer_costs_the_names_of_its_own_parameters_only(
 
         wait_until(lambda: names() == {"/talker", "/stopped"}, "both nodes")
         stopped.process.send_signal(signal.SIGSTOP)
+        os.waitid(os.P_PID, stopped.process.pid, os.WSTOPPED | os.WNOWAIT)  # until each of its threads has stopped
         try:
             assert names() == {"/talker"}
         finally:
