@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-import av
 import pygame
 import pytest
 
@@ -10,6 +9,8 @@ from tests.drives.console import complaint, results, simconsole, within
 
 
 def test_a_video_shows_the_drive(short: Path, tmp_path: Path) -> None:
+    import av
+
     path = tmp_path / "drive.mp4"
     words = ("--from", 1, "--to", 2, "--fps", 10, "--size", "640x480", "--out", path)
     done = simconsole("video", short, *words, "--json")

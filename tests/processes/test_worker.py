@@ -14,16 +14,19 @@ from simconsole.session.scene_worker import SceneWorker, scene_source
 from simconsole.session.worker_programs import CanWorker
 from simconsole.values.errors import WorkerError
 
-SCENE = SceneWorker(
-    path="/tmp/scene.rrd", source=scene_source(resolve(load_session("demo")), ("vehicle.x_m",), 250), has_bridge=True
-)
 CAN = CanWorker(profile=CanProfile(), tick_hz=500, wheels=(7, 8, 9, 10), bundle="/tmp/bundle")
 
 
-@pytest.mark.parametrize("worker", [SCENE, CAN, msgspec.structs.replace(CAN, wheels=None)])
-def test_a_worker_is_the_same_on_the_other_side(worker: Worker) -> None:
-    told = msgspec.json.encode(WorkerSpec.of("any", worker))
-    assert load_worker(msgspec.json.decode(told, type=WorkerSpec)) == worker
+@pytest.fixture(scope="module")
+def scene() -> SceneWorker:
+    source = scene_source(resolve(load_session("demo")), ("vehicle.x_m",), 250)
+    return SceneWorker(path="/tmp/scene.rrd", source=source, has_bridge=True)
+
+
+def test_a_worker_is_the_same_on_the_other_side(scene: SceneWorker) -> None:
+    for worker in (scene, CAN, msgspec.structs.replace(CAN, wheels=None)):
+        told = msgspec.json.encode(WorkerSpec.of("any", worker))
+        assert load_worker(msgspec.json.decode(told, type=WorkerSpec)) == worker
 
 
 @pytest.mark.parametrize(
@@ -63,8 +66,8 @@ sys.exit(worker.main())
 """
 
 
-def test_a_worker_that_may_open_no_more_files_is_one_line(tmp_path: Path) -> None:
-    call = WorkerCall(folder=str(tmp_path), worker=WorkerSpec.of("scene", SCENE), patience_s=1.0)
+def test_a_worker_that_may_open_no_more_files_is_one_line(tmp_path: Path, scene: SceneWorker) -> None:
+    call = WorkerCall(folder=str(tmp_path), worker=WorkerSpec.of("scene", scene), patience_s=1.0)
     command = [sys.executable, "-c", WITHOUT_FILES]
     done = subprocess.run(
         command, input=msgspec.json.encode(call).decode() + "\n", capture_output=True, text=True, check=False

@@ -2,11 +2,10 @@ import os
 from collections.abc import Generator, Iterator, Sequence
 from contextlib import closing, contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import msgspec
 import pytest
-from distributed import LocalCluster
-from distributed.scheduler import KilledWorker
 
 from simconsole.evaluation.sweep import dask_engine
 from simconsole.evaluation.sweep.dask_engine import batch_size, check_version, drive_lines, drive_on_dask
@@ -16,19 +15,12 @@ from simconsole.values.errors import SimConsoleError
 from tests.evaluation.sweep.clusters import cluster, pool_workers_of
 from tests.evaluation.sweep.plans import grip
 
+if TYPE_CHECKING:
+    from distributed import LocalCluster
+
 
 def by_index(results: Sequence[TaskResult]) -> list[TaskResult]:
     return sorted(results, key=lambda result: result.index)
-
-
-class Deadly(KilledWorker):
-    """What Dask says of a task that has cost too many workers."""
-
-    def __init__(self) -> None:
-        Exception.__init__(self)
-
-    def __str__(self) -> str:
-        return "deadly"
 
 
 sizes: list[int] = []
@@ -47,6 +39,8 @@ def counted(lines: Sequence[bytes], version: str, sweep: str) -> list[bytes]:
 
 def deadly(lines: Sequence[bytes], version: str, sweep: str) -> list[bytes]:
     """Drive nothing, but end with the sixth of all tasks."""
+    from tests.evaluation.sweep.deadly import Deadly
+
     indices = [from_bytes(line).index for line in lines]
     if 5 in indices:
         raise Deadly
@@ -54,8 +48,10 @@ def deadly(lines: Sequence[bytes], version: str, sweep: str) -> list[bytes]:
 
 
 @contextmanager
-def local_cluster(workers: int) -> Iterator[LocalCluster]:
+def local_cluster(workers: int) -> "Iterator[LocalCluster]":
     """A scheduler and workers of one thread each, all in this process."""
+    from distributed import LocalCluster
+
     with LocalCluster(  # type: ignore[no-untyped-call]
         n_workers=workers, threads_per_worker=1, processes=False, protocol="tcp://", dashboard_address=":0"
     ) as there:

@@ -4,7 +4,6 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-import av
 import numpy as np
 import pygame
 import pytest
@@ -32,6 +31,8 @@ def frames(count: int = 12, fps: int = 25) -> Iterator[Frame]:
 
 
 def test_what_went_in_comes_out(tmp_path: Path) -> None:
+    import av
+
     path = tmp_path / "a.mp4"
     assert write_video(path, frames(), 25) == 12
     with av.open(str(path)) as file:
@@ -45,6 +46,8 @@ def test_what_went_in_comes_out(tmp_path: Path) -> None:
 
 
 def test_sound_goes_with_the_pictures(tmp_path: Path) -> None:
+    import av
+
     path = tmp_path / "a.mp4"
     write_video(path, frames(50), 25)
     with av.open(str(path)) as file:
