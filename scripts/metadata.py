@@ -18,7 +18,7 @@ _ORIGIN = re.compile(
     re.IGNORECASE,
 )
 _LINK = re.compile(r"\]\((?!\w+:|#)([^)\s]+)\)")
-WHICH = " For ADDRESS put the repository's, as your\nbrowser shows it"
+WHICH = " ADDRESS is this page's"
 _RAW = (".gif", ".jpg", ".mp4", ".png", ".svg", ".webp")
 """Files that a browser gets as they are; of all others it gets a page."""
 
@@ -40,7 +40,7 @@ def linked(readme: str, address: str) -> str:
         kind = "raw" if link[1].partition("#")[0].endswith(_RAW) else "blob"
         return f"]({address}/{kind}/HEAD/{link[1]})"
 
-    return _LINK.sub(absolute, readme).replace(WHICH, "").replace("ADDRESS", address)
+    return _LINK.sub(absolute, readme).replace(f".{WHICH}", "").replace("ADDRESS", address)
 
 
 class Metadata(MetadataHookInterface):

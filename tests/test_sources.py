@@ -1,13 +1,14 @@
 """What every source file must look like."""
 
 import ast
+import re
 from typing import Any, get_type_hints
 
 import pytest
 
 from simconsole.values import signals
 from tests.paths import ROOT
-from tests.sources import modules, python_files
+from tests.sources import Facts, facts, facts_of, modules, python_files, trees
 
 UNITS = ("_rad", "_radps", "_m", "_mps", "_mps2", "_nm", "_s", "_ticks")
 UNITLESS = {
@@ -60,34 +61,19 @@ def test_files_are_short_enough_to_read() -> None:
 
 
 def test_modules_say_what_they_are() -> None:
-    said = {name: ast.get_docstring(ast.parse(path.read_text())) or "" for name, path in modules().items()}
-    assert [name for name, text in said.items() if not text.strip()] == []
+    unsaid = (path for path in modules().values() if not re.match(r'"""\w', path.read_text()))
+    assert [path for path in unsaid if not (ast.get_docstring(ast.parse(path.read_text())) or "").strip()] == []
 
 
-def built_by_position(tree: ast.AST, records: set[str], most: int = 5) -> list[str]:
+def built_by_position(module: Facts, records: set[str], most: int = 5) -> list[str]:
     """The records that are built with more than `most` positional values; `Record(*values)` is not meant."""
-    return [
-        f"{node.func.id}, line {node.lineno}"
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in records
-        if len([value for value in node.args if not isinstance(value, ast.Starred)]) > most
-    ]
-
-
-def records() -> set[str]:
-    """The names of all record classes of the package."""
-    return {
-        node.name
-        for path in modules().values()
-        for node in ast.walk(ast.parse(path.read_text()))
-        if isinstance(node, ast.ClassDef) and any(ast.unparse(base) == "NamedTuple" for base in node.bases)
-    }
+    return [f"{name}, line {line}" for name, line, given in module.calls if name in records and given > most]
 
 
 def test_large_records_are_built_by_keyword() -> None:
     """Nobody sees a swap of two floats."""
-    known = records()
-    found = {name: built_by_position(ast.parse(path.read_text()), known) for name, path in modules().items()}
+    known = {record for module in facts().values() for record in module.records}
+    found = {name: built_by_position(module, known) for name, module in facts().items()}
     assert {name: calls for name, calls in found.items() if calls} == {}
 
 
@@ -95,7 +81,7 @@ def test_finder_of_records_built_by_position_finds_them() -> None:
     tree = ast.parse(
         "A(1, 2, 3, 4, 5, 6)\nA(1, 2, 3, 4, 5, *rest)\nA(a=1)\nB(1, 2, 3, 4, 5, 6)\nA(*rest)\nA(1, 2, 3, 4, 5, f=6)"
     )
-    assert built_by_position(tree, {"A"}) == ["A, line 1"]
+    assert built_by_position(facts_of(tree), {"A"}) == ["A, line 1"]
 
 
 def members_chosen_in_calls(tree: ast.AST) -> list[str]:
@@ -125,7 +111,8 @@ def members_chosen_in_calls(tree: ast.AST) -> list[str]:
 
 
 def test_kernels_compile_with_every_python() -> None:
-    found = {name: members_chosen_in_calls(ast.parse(path.read_text())) for name, path in modules().items()}
+    found = {name: members_chosen_in_calls(tree) for name, tree in trees(r"@.*kernel")}
+    assert len(found) > 50
     assert {name: calls for name, calls in found.items() if calls} == {}
 
 

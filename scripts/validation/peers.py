@@ -92,10 +92,10 @@ def _peer(start: list[float], model: Callable[..., Any], angle: float, seen: Cal
     every = round(SAMPLE_S / h)
     for index in range(round(DURATION_S / h)):
         u = [angle / RAMP_S if index * h < RAMP_S - 0.5 * h else 0.0, 0.0]
-        k1 = np.array(model(x, u, PARAMETERS))
-        k2 = np.array(model(x + 0.5 * h * k1, u, PARAMETERS))
-        k3 = np.array(model(x + 0.5 * h * k2, u, PARAMETERS))
-        k4 = np.array(model(x + h * k3, u, PARAMETERS))
+        k1 = np.array(model(x.tolist(), u, PARAMETERS))  # plain floats: the same bits, twice as fast
+        k2 = np.array(model((x + 0.5 * h * k1).tolist(), u, PARAMETERS))
+        k3 = np.array(model((x + 0.5 * h * k2).tolist(), u, PARAMETERS))
+        k4 = np.array(model((x + h * k3).tolist(), u, PARAMETERS))
         x = x + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
         if (index + 1) % every == 0:
             samples.append(seen(x))

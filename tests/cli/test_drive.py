@@ -103,7 +103,7 @@ def test_with_nobody_seated_nothing_is_commanded(plain: Path, tmp_path: Path) ->
 
 def test_a_drive_of_one_tick_is_a_whole_drive(tmp_path: Path, script: Path) -> None:
     bundle = tmp_path / "bundle"
-    done = simconsole("drive", "--headless", "--driver", f"script:{script}", "--for", 0.004, "--out", bundle, "--json")
+    done = within("drive", "--headless", "--driver", f"script:{script}", "--for", 0.004, "--out", bundle, "--json")
     assert done.returncode == 0, done.stderr
     assert results(done)["ticks"] == 1
     assert within("replay", bundle).returncode == 0
@@ -116,7 +116,7 @@ def test_a_session_finds_its_script_beside_itself(tmp_path: Path, script: Path) 
         "schema: 1\noutputs: {hud: null, scene: null, report: false}\n"
         "devices: {driver: 'script:person.yaml'}\nmode: {pacing: free}\n"
     )
-    done = simconsole("drive", session, "--for", 1, "--out", tmp_path / "bundle", "--json")
+    done = within("drive", session, "--for", 1, "--out", tmp_path / "bundle", "--json")
     assert done.returncode == 0, done.stderr
     assert open_bundle(tmp_path / "bundle").log.table().column("driver.clutch").max() == pytest.approx(1.0)
 

@@ -17,7 +17,7 @@ SESSION = """\
 schema: 1
 environment: {world: urban}
 scenario: {vehicle: hatchback}
-outputs: {bridge: {port: 0}, hud: null, scene: {rate_hz: 20, chunk_s: 0.1}, report: false}
+outputs: {bridge: null, hud: null, scene: {rate_hz: 20, chunk_s: 0.1}, report: false}
 devices:
   driver: virtual
   person: {title: drives on, sit_s: 0.2, cruise_kmh: 30, stop: {distance_m: 2600}}

@@ -76,8 +76,10 @@ def test_view_writes_the_scene_without_opening_it(short: Path, tmp_path: Path) -
 def test_view_opens_a_bundle_s_scene_in_a_window_that_listens_on_this_machine_only(
     short: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """The scene that is opened is the one that was written before."""
     opened: list[str] = []
     monkeypatch.setattr("simconsole.scene.viewer.scene_server.open_native", opened.append)
+    monkeypatch.setattr("simconsole.evaluation.report.exports.write_scene", lambda folder, told: folder / "scene.rrd")
     assert main(["view", str(short)]) == 0
     assert opened == [str(short / "scene.rrd")]
 
@@ -99,17 +101,21 @@ def test_view_shows_a_bundle_in_the_browser_when_told_so(short: Path, tmp_path: 
     assert "the drive has ended" not in done.stderr
 
 
-def test_compare_finds_two_drives_of_one_script_equal(short: Path, script: Path, tmp_path: Path) -> None:
-    again = tmp_path / "again"
-    done = simconsole("drive", "--headless", "--driver", f"script:{script}", "--for", 3, "--out", again, "--json")
+def test_compare_finds_two_drives_of_one_script_equal(script: Path, plain: Path, tmp_path: Path) -> None:
+    """One in this process and one in a program of its own."""
+    first, again = tmp_path / "first", tmp_path / "again"
+    words = ("drive", plain, "--driver", f"script:{script}", "--for", 3)
+    done = within(*words, "--out", first, "--no-pack")
+    assert done.returncode == 0, done.stderr
+    done = simconsole(*words, "--out", again, "--json")
     assert done.returncode == 0, done.stderr
     assert results(done)["packing_failure"] is None
-    compared = within("compare", short, again, "--json")
+    compared = within("compare", first, again, "--json")
     assert compared.returncode == 0, compared.stderr
     assert results(compared) == ALL_EQUAL
     assert not (again / "drive.log").exists()
     assert within("unpack", again).returncode == 0
-    assert (short / "drive.log").read_bytes() == (again / "drive.log").read_bytes()
+    assert (first / "drive.log").read_bytes() == (again / "drive.log").read_bytes()
 
 
 def test_a_packed_bundle_serves_every_command(copy: Path) -> None:

@@ -105,7 +105,7 @@ def test_port_of_the_system_s_choice_is_said_and_our_own_server_passes_the_check
         controller.start()
         wait_until(lambda: controller.odometry > 0, "odometry")
         assert controller.statuses == []
-        checked = simconsole("bridge", "check", f"ws://127.0.0.1:{port}", "--json")
+        checked = within("bridge", "check", f"ws://127.0.0.1:{port}", "--json")
         server.process.send_signal(signal.SIGINT)
         done = server.end()
         controller.join(PATIENCE_S)
@@ -140,7 +140,7 @@ def test_it_is_not_open_to_other_machines_by_accident() -> None:
 
 
 def test_it_serves_others_with_a_certificate_and_a_token_and_ends_by_itself_when_told_so(tmp_path: Path) -> None:
-    made = results(simconsole("bridge", "cert", "--host", "0.0.0.0", "--out", tmp_path, "--json"))
+    made = results(within("bridge", "cert", "--host", "0.0.0.0", "--out", tmp_path, "--json"))
     options = ("--tokens", made["tokens"], "--certificate", made["certificate"])
     done = simconsole("bridge", "serve", "--host", "0.0.0.0", "--port", free_port(), "--for", 0.5, *options, "--json")
     assert done.returncode == 0, done.stderr

@@ -48,7 +48,7 @@ def act(rig: Any, kind: str, value: Any) -> Event | int:
     return 0
 
 
-@effort(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
+@effort(max_examples=30, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
 @given(st.sampled_from(list(Mode)), st.sampled_from([50, 250, 1000]), st.lists(ACTS, max_size=25))
 def test_the_rules_hold_in_any_short_drive(
     make_rig: Callable[..., Any], start: Mode, tick_hz: int, acts: list[tuple[str, Any]]

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import msgspec
 import numpy as np
 
-from simconsole.devices.calibration.cockpit_settings import cockpit_settings
+from simconsole.devices.calibration.cockpit_settings import CockpitSettings, cockpit_settings
 from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample, wheel_raw
 from simconsole.devices.force_feedback.motor import SimulatedWheelPort, WheelMotor
 from simconsole.devices.force_feedback.simulated_wheel import HANDS_OFF, Arm, SimulatedWheel, step_wheel
@@ -29,6 +29,8 @@ TICK_HZ = 250
 FAST_MPS = 53.0
 """Above it the wheel is turned more slowly: the angle of a bend falls by the square of the speed, in a car that
 oversteers by more."""
+MOST_S = 150.0
+"""How long a car may take to its speed and into its bend."""
 HELD = Arm(400.0, 6.0, 0.0, 60.0, 0.0)
 COCKPIT = "t500rs_th8rs"
 
@@ -50,6 +52,8 @@ ENDS = [
     for delay_ms in (5, 32)
 ]
 """The corners of the range that wheels of this class have."""
+SOME_ENDS = ENDS[::5]
+"""Four of them that have both values of each figure."""
 
 
 def draws(rng: np.random.Generator, count: int) -> list[Draw]:
@@ -64,7 +68,11 @@ def draws(rng: np.random.Generator, count: int) -> list[Draw]:
 def wheels(sample: Sample) -> list[Draw]:
     """Return the shipped wheel, and corners of that range: one that is drawn, or all of them with 60 between them."""
     rng = np.random.default_rng(sample.seed)
-    return [Draw(), *(ENDS if sample.long else [ENDS[rng.integers(len(ENDS))]]), *draws(rng, sample.of(0, 60))]
+    return [
+        Draw(),
+        *(ENDS if sample.long else [SOME_ENDS[rng.integers(len(SOME_ENDS))]]),
+        *draws(rng, sample.of(0, 60)),
+    ]
 
 
 def true_force(shipped: ForceFeedback, draw: Draw) -> ForceFeedback:
@@ -107,40 +115,50 @@ class Bend(NamedTuple):
     speed_mps: float
 
 
+def after(snapshot: Snapshot, intent: Intent, settings: CockpitSettings, console: Console) -> Snapshot:
+    """Return the next tick, in which hands and feet do this."""
+    sample = raw_sample(intent, settings)._replace(wheel_motor=1.0)
+    inputs = input_vector(TickInputs(sample, NO_COMMAND, NO_EVENTS))
+    return Snapshot(snapshot.tick + 1, TICK_HZ, advance_vector(snapshot.vector, inputs, console))
+
+
 @cache
-def bend(vehicle: str, speed_kmh: float, lateral_mps2: float) -> Bend | None:
-    """Drive into a bend with the wheel held; None where the car does not reach the speed."""
+def at_speed(vehicle: str, speed_kmh: float) -> Snapshot:
+    """Drive a car straight on up to a speed; the last tick of MOST_S where it does not reach it."""
     console, session, vector = console_of(vehicle, None)
     assert isinstance(session.vehicle, CarProfile)
     settings = cockpit_settings(session.cockpit, TICK_HZ)
-    steer = {"rad": 0.0}
-    hold = SpeedHolder(speed_kmh / 3.6)
-
-    def turn(snapshot: Snapshot, time_s: float) -> Intent | None:
-        if time_s > 7.0:
-            return None
-        if time_s < 5.0:
-            error = lateral_mps2 - snapshot.vehicle.ay_mps2
-            vx_mps = snapshot.vehicle.vx_mps
-            steer["rad"] += 0.15 * error / snapshot.tick_hz * min(1.0, 25.0 / vx_mps, (FAST_MPS / vx_mps) ** 6)
-        return Intent(hand_wheel_rad=steer["rad"], throttle=hold(snapshot), gear=1.0)
-
-    pilot = RunUp(speed_kmh, session.vehicle.steering.ratio, turn, rolling=False)
-    snapshot, intent = Snapshot(0, TICK_HZ, vector), Intent()
-    while snapshot.t_s < 150.0:
+    pilot = RunUp(speed_kmh, session.vehicle.steering.ratio, lambda snapshot, time_s: None, rolling=False)
+    snapshot = Snapshot(0, TICK_HZ, vector)
+    while snapshot.t_s < MOST_S:
         wanted = pilot(snapshot)
         if wanted is None:
-            vehicle_now = snapshot.vehicle
+            break
+        snapshot = after(snapshot, wanted, settings, console)
+    return snapshot
+
+
+@cache
+def bend(vehicle: str, speed_kmh: float, lateral_mps2: float) -> Bend | None:
+    """Drive into a bend with the wheel held; None where the car does not reach the speed."""
+    console, session, _ = console_of(vehicle, None)
+    settings = cockpit_settings(session.cockpit, TICK_HZ)
+    hand_rad, intent = 0.0, Intent()
+    hold = SpeedHolder(speed_kmh / 3.6)
+    snapshot = at_speed(vehicle, speed_kmh)
+    began = snapshot.tick
+    while snapshot.t_s < MOST_S:
+        vehicle_now, time_s = snapshot.vehicle, (snapshot.tick - began) / TICK_HZ
+        if time_s > 7.0:
             return Bend(
-                snapshot.vector, snapshot.tick, steer["rad"], intent.throttle, vehicle_now.ay_mps2, vehicle_now.vx_mps
+                snapshot.vector, snapshot.tick, hand_rad, intent.throttle, vehicle_now.ay_mps2, vehicle_now.vx_mps
             )
-        intent = wanted
-        sample = raw_sample(intent, settings)._replace(wheel_motor=1.0)
-        snapshot = Snapshot(
-            snapshot.tick + 1,
-            TICK_HZ,
-            advance_vector(snapshot.vector, input_vector(TickInputs(sample, NO_COMMAND, NO_EVENTS)), console),
-        )
+        if time_s < 5.0:
+            vx_mps = vehicle_now.vx_mps
+            slower = min(1.0, 25.0 / vx_mps, (FAST_MPS / vx_mps) ** 6)
+            hand_rad += 0.15 * (lateral_mps2 - vehicle_now.ay_mps2) / TICK_HZ * slower
+        intent = Intent(hand_wheel_rad=hand_rad, throttle=hold(snapshot), gear=1.0)
+        snapshot = after(snapshot, intent, settings, console)
     return None
 
 

@@ -29,7 +29,8 @@ import msgspec, pyarrow.parquet
 import simconsole
 from simconsole.cli.main import main
 folder = Path(sys.argv[1])
-session = simconsole.load(folder / "quick.yaml").with_values({"scenario.duration_s": 4.0})
+brief = {"scenario.duration_s": 4.0, "outputs.scene": None, "outputs.report": False}
+session = simconsole.load(folder / "quick.yaml").with_values(brief)
 drive = session.run(out=folder / "bundle")
 assert drive.replay().hashes_equal
 plain = msgspec.to_builtins(session.profile)

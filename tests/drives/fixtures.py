@@ -27,6 +27,23 @@ points:
   - {time_s: 2.6, throttle: 0, brake: 0.3}
 """
 
+REPEATED = frozenset(
+    {
+        "handling/sine_with_dwell_van",
+        "handling/bend_braking_van",
+        "handling/severe_double_lane_change",
+        "handling/straight_braking_30",
+        "handling/straight_braking_60",
+        "by_hand/urban",
+        "by_hand/van",
+        "roads/country_autopilot",
+        "roads/urban_autopilot",
+        "traffic/lead_brakes",
+        "traffic/stop_and_go",
+    }
+)
+"""Scenarios that repeat another with another car, speed, friction or world: driven with --long only."""
+
 Once = Callable[[str, Callable[[Path], object]], Path]
 """Return the folder of this name; whoever asks first makes what is in it, the others wait."""
 
@@ -106,23 +123,27 @@ def demo(once: Once) -> Demo:
 
 
 class Checked(NamedTuple):
-    """The one check of all shipped scenarios of this test run."""
+    """The one check of the shipped scenarios of this test run."""
 
     scenarios: dict[Path, dict[str, Any]]  # what `--json` says of each file
     cpu_s: float  # of the command and all that it started
 
 
 @pytest.fixture(scope="session")
-def checked(once: Once) -> Checked:
-    """`simconsole check` of the folder of all shipped scenarios, once for all tests."""
+def checked(once: Once, pytestconfig: pytest.Config) -> Checked:
+    """`simconsole check` of all shipped scenarios, once for all tests; the sample leaves out what repeats another."""
     scenarios = profiles_folder() / "scenarios"
+    named = {
+        path.relative_to(scenarios).with_suffix("").as_posix(): path for path in map(Path, selected([str(scenarios)]))
+    }
+    assert named.keys() > REPEATED
+    paths = [path for name, path in named.items() if pytestconfig.option.long or name not in REPEATED]
 
     def make(folder: Path) -> None:
         before = os.times()
-        done = simconsole("check", scenarios, "--jobs", "2", "--json")
+        done = simconsole("check", *paths, "--json")
         after = os.times()
         (folder / "told.json").write_text(json.dumps([results(done), sum(after[2:4]) - sum(before[2:4])]))
 
     told, cpu_s = json.loads((once("checked", make) / "told.json").read_text())
-    paths = [Path(name) for name in selected([str(scenarios)])]
     return Checked(dict(zip(paths, told["scenarios"], strict=True)), cpu_s)

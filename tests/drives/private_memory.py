@@ -7,7 +7,8 @@ from typing import NamedTuple
 from tests.drives.console import Running
 from tests.patience import pause
 
-LOOK_S = 0.005
+LOOK_S = 0.02
+"""A look costs both processes time; what is kept stays to be seen."""
 
 
 class Private(NamedTuple):

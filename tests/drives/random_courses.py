@@ -17,6 +17,7 @@ from simconsole.session.resolution import load_session, resolve
 from simconsole.values.errors import ProfileError
 from simconsole.values.signals import Mode, VehicleState
 from simconsole.values.state_vector import Snapshot
+from simconsole.values.units import DEG_PER_RAD
 from simconsole.world.course import Course
 from simconsole.world.planning import solve
 from simconsole.world.route import Route
@@ -30,6 +31,14 @@ _REACHED_RAD = 1e-6
 _STATES = len(VehicleState._fields)
 SETTLED_M = 20.0
 """Driven by the autopilot before its errors count: it takes over beside the path, from a person."""
+DRIVES = "virtual, person: {{sit_s: 0.5, cruise_kmh: 20, top_gear: 2, autonomy: {{distance_m: {}}}}}"
+ASKS = "script:asks.yaml"
+SCRIPT = """points:
+  - {time_s: 0.0, throttle: 0, brake: 0, clutch: 0, hand_wheel_deg: 0, gear: 0}
+  - {time_s: 0.5, press: [autonomous]}
+"""
+"""Somebody who only asks, without a wheel that the motor turns: fewer ticks in which anybody acts."""
+HAND_OVER_M = 20.0
 
 
 class Size(NamedTuple):
@@ -98,12 +107,13 @@ def tracked(
     tracker: str = "preview",
     control: str = "{}",
     until_m: float = math.inf,
+    hand_over_m: float | None = HAND_OVER_M,
 ) -> Tracked:
     """Drive one lap over the link (YAML of a LinkProfile), behind a gate (of a ControlProfile), and measure."""
     folder.mkdir()
     (folder / "course.yaml").write_text(to_text(world, "random"))
     return tracked_on(
-        Course(world), "course.yaml", vehicle, link, folder, tracker=tracker, control=control, until_m=until_m
+        Course(world), "course.yaml", vehicle, link, folder, hand_over_m, tracker, control, until_m=until_m
     )
 
 
@@ -113,32 +123,35 @@ def tracked_on(
     vehicle: str,
     link: str,
     folder: Path,
-    hand_over_m: float = 20.0,
+    hand_over_m: float | None = HAND_OVER_M,
     tracker: str = "preview",
     control: str = "{}",
+    start_m: float = 0.0,
     until_m: float = math.inf,
 ) -> Tracked:
     """Drive a lap, or an open route up to its end, in a world of `folder` or a shipped one, and measure.
 
-    A drive that goes no farther than `until_m` has driven its route once it is there.
+    The car stands at `start_m` first. A person drives it up to `hand_over_m`, or (None) asks for autonomy at once.
+    A drive that goes no farther than `until_m` has driven its route there.
     """
     length_m = min(route.length_m, until_m)
     (folder / "session.yaml").write_text(
         f"schema: 1\nenvironment: {{world: {world}}}\n"
-        f"scenario: {{vehicle: {vehicle}, duration_s: 600}}\n"
+        f"scenario: {{vehicle: {vehicle}, duration_s: 600, start: {_start(route, start_m)}}}\n"
         f"features: {{autopilot: {world}, tracker: {tracker}, control: {control}}}\n"
         f"outputs: {{hud: null, scene: null, report: false, bridge: {{port: 0, link: {link}}}}}\n"
-        "devices: {driver: virtual, person: {sit_s: 0.5, cruise_kmh: 20, top_gear: 2, autonomy: "
-        f"{{distance_m: {hand_over_m}}}}}}}\n"
+        f"devices: {{driver: {ASKS if hand_over_m is None else DRIVES.format(hand_over_m)}}}\n"
         "mode: {pacing: lockstep, answer_timeout_s: 60}\n"
     )
+    (folder / "asks.yaml").write_text(SCRIPT)
     ended = (Mode.MINIMAL_RISK, Mode.STOPPED, Mode.EMERGENCY_STOP)
 
     def watch(snapshot: Snapshot) -> bool:
         car = snapshot.vehicle
-        at_end = car.distance_m > route.length_m - END_M and car.vx_mps < STANDING_MPS
+        place_m = start_m + car.distance_m
+        at_end = place_m > route.length_m - END_M and car.vx_mps < STANDING_MPS
         goes_on = route.closed or until_m < route.length_m
-        over = car.distance_m > length_m + 10.0 if goes_on else at_end
+        over = place_m > length_m + 10.0 if goes_on else at_end
         return snapshot.arbitration.mode in ended or over
 
     resolved = resolve(load_session(str(folder / "session.yaml")))
@@ -154,7 +167,7 @@ def tracked_on(
     settled = driven & (distance > distance[first] + SETTLED_M)
     drift = _drift(resolved.session.outputs.bridge.link, len(mode), resolved.session.mode.tick_hz)
     x, y = table.column("vehicle.x_m") + drift[:, 0], table.column("vehicle.y_m") + drift[:, 1]
-    place, lateral = route.project_all(x, y, 0.0)
+    place, lateral = route.project_all(x, y, start_m)
     errors_cm = 100.0 * np.abs(lateral[settled])
     commands = np.flatnonzero(np.diff(table.column("ros.sequence"), prepend=0.0) > 0.0)
     commands = commands[settled[commands]]
@@ -174,6 +187,14 @@ def tracked_on(
         driven_s=float(settled.sum()) / tick_hz,
         left_m=left_m,
     )
+
+
+def _start(route: Route, start_m: float) -> str:
+    """Return where the car stands at first, in YAML; null leaves it to the world."""
+    if not start_m:
+        return "null"
+    at = route.at(start_m)
+    return f"{{x_m: {at.x_m}, y_m: {at.y_m}, yaw_deg: {math.remainder(at.yaw_rad, math.tau) * DEG_PER_RAD}}}"
 
 
 def _drift(link: LinkProfile, ticks: int, tick_hz: int) -> NDArray[np.float64]:

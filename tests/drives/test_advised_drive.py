@@ -17,6 +17,7 @@ from simconsole.session.lifecycle import drive
 from simconsole.session.resolution import load_session, resolve
 from simconsole.values.signals import Mode
 from simconsole.world.rules.speed_advice import LEAST_MPS, Advised
+from tests.drives.random_courses import SCRIPT
 
 SESSION = """\
 schema: 1
@@ -24,7 +25,7 @@ environment: {world: urban_signals}
 scenario: {vehicle: hatchback, duration_s: SECONDS, start: {x_m: 120}}
 features: {autopilot: urban_signals, speed_advice: true}
 outputs: {hud: null, scene: null, report: false, bridge: {port: 0}}
-devices: {driver: virtual, person: {sit_s: 0.3, cruise_kmh: 15, top_gear: 2, autonomy: {distance_m: 1}}}
+devices: {driver: "script:asks.yaml"}
 mode: {pacing: lockstep, answer_timeout_s: 60}
 """
 AGAIN_S = 12
@@ -32,6 +33,7 @@ AGAIN_S = 12
 
 def driven(folder: Path, seconds: int) -> Bundle:
     folder.mkdir(exist_ok=True)
+    (folder / "asks.yaml").write_text(SCRIPT)
     (folder / "session.yaml").write_text(SESSION.replace("SECONDS", str(seconds)))
     return open_bundle(drive(resolve(load_session(str(folder / "session.yaml"))), folder / "bundle").folder)
 

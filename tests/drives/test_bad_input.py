@@ -113,7 +113,7 @@ def test_a_wheel_in_boot_mode_is_named_with_its_cure(tmp_path: Path) -> None:
 
 def test_an_existing_recording_is_never_written_over(short: Path, script: Path) -> None:
     before = {path.name: path.stat().st_mtime_ns for path in short.iterdir()}
-    line = complaint(simconsole("drive", "--headless", "--driver", f"script:{script}", "--for", 1, "--out", short))
+    line = complaint(within("drive", "--headless", "--driver", f"script:{script}", "--for", 1, "--out", short))
     assert line == f"simconsole drive: {short}: cannot be recorded to: the folder is not empty"
     assert {path.name: path.stat().st_mtime_ns for path in short.iterdir()} == before
 
@@ -139,7 +139,7 @@ def test_a_free_drive_refuses_links_that_it_would_not_open(tmp_path: Path, link:
 def test_lockstep_needs_a_bridge(tmp_path: Path) -> None:
     session = tmp_path / "session.yaml"
     session.write_text("schema: 1\ndevices: {driver: none}\nmode: {pacing: lockstep}\n")
-    assert "outputs.bridge: value missing: " in drive(tmp_path, session, "--for", 1, run=simconsole)
+    assert "outputs.bridge: value missing: " in drive(tmp_path, session, "--for", 1)
 
 
 @pytest.mark.parametrize("pacing", ["realtime", "lockstep"])
@@ -151,7 +151,7 @@ def test_a_port_that_is_taken_is_one_line(tmp_path: Path, pacing: str) -> None:
             f"schema: 1\noutputs: {{bridge: {{port: {port}}}, hud: null, scene: null}}\n"
             f"devices: {{driver: none}}\nmode: {{pacing: {pacing}}}\n"
         )
-        line = complaint(simconsole("drive", session, "--for", 1, "--out", tmp_path / "bundle"))
+        line = complaint(within("drive", session, "--for", 1, "--out", tmp_path / "bundle"))
     assert f"cannot listen on 127.0.0.1 port {port}: " in line
     assert not (tmp_path / "bundle").exists()
 

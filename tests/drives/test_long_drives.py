@@ -4,13 +4,14 @@ import shutil
 from collections.abc import Callable
 from itertools import islice
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
 from simconsole.recording.bundles.bundle import BundleWriter, open_bundle
 from simconsole.recording.bundles.manifest import read_manifest
-from tests.drives.console import simconsole
-from tests.drives.private_memory import watched
+from simconsole.values.signals import Mode
+from tests.drives.private_memory import Watched, watched
 from tests.samples import Sample
 
 COMMANDS = (("report",), ("view", "--no-open"), ("replay",), ("verify",), ("compare",))
@@ -32,7 +33,7 @@ outputs: {bridge: {port: 0}, hud: null, scene: null, report: false}
 devices:
   cockpit: t500rs_th8rs
   driver: virtual
-  person: {title: hands over, sit_s: 1.0, cruise_kmh: 36, top_gear: 3, autonomy: {distance_m: 110}}
+  person: {title: hands over, sit_s: 0.3, cruise_kmh: 15, top_gear: 3, autonomy: {distance_m: 2}}
 mode: {tick_hz: 250, pacing: lockstep, answer_timeout_s: 60}
 """
 
@@ -48,22 +49,39 @@ def begun(bundle: Path, folder: Path, ticks: int) -> Path:
     return folder
 
 
-@pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory, module_sample: Sample) -> Path:
+class Whole(NamedTuple):
     """A drive of which a quarter is like the whole: by the autopilot, but for the beginning."""
-    folder = tmp_path_factory.mktemp("whole")
-    (folder / "session.yaml").write_text(SESSION)
-    words = ("--for", module_sample.of(100, 260), "--out", folder / "bundle", "--no-pack")
-    done = simconsole("drive", folder / "session.yaml", *words)
-    assert done.returncode == 0, done.stderr
-    return folder / "bundle"
+
+    seconds: int
+    bundle: Path
+    found: Watched
+
+    @property
+    def ticks(self) -> int:
+        return read_manifest(self.bundle).ticks
 
 
 @pytest.fixture(scope="module")
-def parts(whole: Path) -> tuple[Path, Path]:
-    """The first quarter of that drive, and all of it."""
-    ticks = read_manifest(whole).ticks
-    return begun(whole, whole.parent / "short", ticks // 4), begun(whole, whole.parent / "long", ticks)
+def whole(tmp_path_factory: pytest.TempPathFactory, module_sample: Sample) -> Whole:
+    return driven(tmp_path_factory.mktemp("whole"), module_sample.of(48, 260))
+
+
+def driven(folder: Path, seconds: int) -> Whole:
+    """Drive so long by the program, and pack."""
+    (folder / "session.yaml").write_text(SESSION)
+    words = ("drive", folder / "session.yaml", "--for", seconds, "--out", folder / "bundle")
+    found = watched(folder / "said", *words)
+    assert found.done.returncode == 0, found.done.stdout + found.done.stderr
+    return Whole(seconds, folder / "bundle", found)
+
+
+@pytest.fixture(scope="module")
+def parts(whole: Whole) -> tuple[Path, Path]:
+    """The first quarter of that drive, and all of it, neither packed."""
+    folder, ticks = whole.bundle.parent, whole.ticks
+    modes = open_bundle(whole.bundle).log.table(("arbitration.mode",)).column("arbitration.mode")
+    assert (modes[ticks // 8 :] == Mode.AUTONOMOUS).all()
+    return begun(whole.bundle, folder / "short", ticks // 4), begun(whole.bundle, folder / "long", ticks)
 
 
 @pytest.mark.timeout(900)
@@ -90,22 +108,21 @@ def test_four_times_the_drive_takes_no_more_memory(
 
 @pytest.mark.timeout(4 * 3600)
 def test_a_drive_of_two_hours_takes_400_megabytes_in_each_process(
-    tmp_path: Path, sample: Sample, record_property: Callable[[str, object], None]
+    whole: Whole, tmp_path: Path, sample: Sample, record_property: Callable[[str, object], None]
 ) -> None:
     """Driven, reported, shown, replayed, verified and compared by the program; 3.6 GB of log.
 
-    The sample only drives: the commands are held to the same bar above, with longer drives than this one.
+    The sample is the drive of all tests here, and only driven: the commands are held to the same bar above.
     """
-    seconds = sample.of(5, 7200)
-    (tmp_path / "session.yaml").write_text(SESSION)
-    bundle = tmp_path / "bundle"
-    drive = ("drive", tmp_path / "session.yaml", "--for", seconds, "--out", bundle)
-    others = [(*command, bundle, *((bundle,) if command[0] == "compare" else ())) for command in COMMANDS]
-    for words in (drive, *others)[: sample.of(1, 1 + len(others))]:
-        found = watched(tmp_path / "said", *words)
+    drive = driven(tmp_path, 7200) if sample.long else whole
+    others = [(*command, drive.bundle, *((drive.bundle,) if command[0] == "compare" else ())) for command in COMMANDS]
+    seen = [("drive", drive.found)]
+    seen += [(words[0], watched(tmp_path / "said", *words)) for words in others[: sample.of(0, len(others))]]
+    for name, found in seen:
         assert found.done.returncode == 0, found.done.stdout + found.done.stderr
         told = f"{found.own.all / MB:.0f} MB, its child {found.child.all / MB:.0f} MB"
-        record_property(f"{words[0]}, private memory, {seconds} s of drive", told)
+        record_property(f"{name}, private memory, {drive.seconds} s of drive", told)
         assert max(found.own.all, found.child.all) <= BAR_BYTES
-    assert read_manifest(bundle).ticks == seconds * 250
-    shutil.rmtree(bundle)
+    assert drive.ticks == drive.seconds * 250
+    if sample.long:
+        shutil.rmtree(drive.bundle)

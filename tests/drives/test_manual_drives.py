@@ -17,7 +17,7 @@ from simconsole.session.resolution import load_session, resolve
 from simconsole.values.signals import Mode
 from simconsole.values.units import DEG_PER_RAD, KMH_PER_MPS
 from simconsole.world.kinds.worlds import open_world
-from simconsole.world.route import Route
+from simconsole.world.route import PathPoint, Route
 from tests.drives.console import results, within
 from tests.samples import Sample
 
@@ -29,13 +29,17 @@ LEAST_M, MOST_M = 0.15, 0.35
 SESSION = """\
 schema: 1
 environment: {{world: {world}}}
-scenario: {{vehicle: hatchback, duration_s: {seconds}}}
+scenario: {{vehicle: hatchback, duration_s: {seconds}, start: {start}}}
 outputs: {{hud: null, scene: null, report: false}}
 devices:
   driver: virtual
   person: {{along: route, cruise_kmh: 130, top_gear: 6, sit_s: 0.3, seed: {seed}}}
-mode: {{pacing: free}}
+mode: {{pacing: free, tick_hz: {tick_hz}}}
 """
+TICK_HZ, SAMPLE_HZ = 250, 125
+"""How a person keeps the lane is a matter of seconds: the sample of it has half the ticks."""
+PAD_M = 430.0
+"""From here the sample drives on the skid pad: a straight to shift up on, the bend, and the end."""
 
 
 class Driven(NamedTuple):
@@ -58,13 +62,23 @@ def route(world: str) -> Route:
     return open_world(load_world(world)).route
 
 
-def by_hand(world: str, seed: int, folder: Path, seconds: float = 600.0) -> Driven:
+def place(at: PathPoint) -> str:
+    """Return where a car stands at first, in YAML."""
+    yaw_deg = math.remainder(at.yaw_rad, math.tau) * DEG_PER_RAD
+    return f"{{x_m: {at.x_m}, y_m: {at.y_m}, yaw_deg: {yaw_deg}}}"
+
+
+def by_hand(
+    world: str, seed: int, folder: Path, seconds: float = 600.0, tick_hz: int = TICK_HZ, start_m: float = 0.0
+) -> Driven:
     folder.mkdir(parents=True)
-    (folder / "session.yaml").write_text(SESSION.format(world=world, seed=seed, seconds=seconds))
+    start = place(route(world).at(start_m)) if start_m else "null"
+    text = SESSION.format(world=world, seed=seed, seconds=seconds, tick_hz=tick_hz, start=start)
+    (folder / "session.yaml").write_text(text)
     drive(resolve(load_session(str(folder / "session.yaml"))), folder / "bundle")
     table = open_bundle(folder / "bundle").log.table(("vehicle.x_m", "vehicle.y_m", "vehicle.vx_mps"))
     x, y, speed = (table.column(f"vehicle.{name}") for name in ("x_m", "y_m", "vx_mps"))
-    places, lateral = route(world).project_all(x, y, 0.0)
+    places, lateral = route(world).project_all(x, y, start_m)
     above = float(((speed - route(world).limits_at(places)) * KMH_PER_MPS).max())
     done = Driven(folder / "bundle", lateral, speed * KMH_PER_MPS, above, route(world).length_m - float(places[-1]))
     print(f"measured: {world}, person {seed}: SDLP {done.deviation_m:.3f} m, max {np.abs(lateral).max():.2f} m")
@@ -80,7 +94,8 @@ def test_people_keep_the_lane_as_published_and_differ(sample: Sample, tmp_path: 
     found = []
     for number in range(sample.of(2, 20)):
         world = "country" if number % 2 == 0 else "motorway"
-        done = by_hand(world, sample.seed + number, tmp_path / str(number), sample.of(120, 600))
+        seconds, tick_hz = sample.of(120, 600), sample.of(SAMPLE_HZ, TICK_HZ)
+        done = by_hand(world, sample.seed + number, tmp_path / str(number), seconds, tick_hz)
         found.append(done.deviation_m)
         assert LEAST_M <= done.deviation_m <= MOST_M
         assert stays(done, world)
@@ -89,8 +104,8 @@ def test_people_keep_the_lane_as_published_and_differ(sample: Sample, tmp_path: 
 
 
 @pytest.mark.parametrize("world", ["skid_pad"])
-def test_a_route_is_driven_by_hand_to_its_end(world: str, tmp_path: Path) -> None:
-    done = by_hand(world, 1, tmp_path / "drive")
+def test_a_route_is_driven_by_hand_to_its_end(sample: Sample, world: str, tmp_path: Path) -> None:
+    done = by_hand(world, 1, tmp_path / "drive", start_m=0.0 if sample.long else PAD_M)
     assert stays(done, world)
     assert -0.5 < done.left_m < 6.0
     assert done.speed_kmh[-1] < 0.2
@@ -117,12 +132,9 @@ def test_in_a_bend_the_person_takes_over_and_stays_in_the_lane(
     """The autopilot drives into bends of 50 m to the left and 40 m to the right; there the person turns the wheel."""
     way = route("urban")
     assert abs(way.curvature_at(start_m + take_back_m)) > 0.01
-    start = way.at(start_m)
-    yaw_deg = math.remainder(start.yaw_rad, math.tau) * DEG_PER_RAD
     (tmp_path / "session.yaml").write_text(
         "schema: 1\nenvironment: {world: urban}\nfeatures: {autopilot: urban}\n"
-        "scenario: {vehicle: hatchback, duration_s: 90, start: "
-        f"{{x_m: {start.x_m}, y_m: {start.y_m}, yaw_deg: {yaw_deg}}}}}\n"
+        f"scenario: {{vehicle: hatchback, duration_s: 90, start: {place(way.at(start_m))}}}\n"
         "outputs: {hud: null, scene: null, report: false, bridge: {port: 0}}\n"
         "devices: {driver: virtual, person: {along: route, sit_s: 0.3, cruise_kmh: 50, autonomy: {distance_m: 40}, "
         f"take_back: {{distance_m: {take_back_m}}}, stop: {{distance_m: {end_m}}}}}}}\n"
@@ -146,8 +158,8 @@ def test_the_command_line_lets_any_person_drive_a_session_that_names_none(tmp_pa
     )
     bundles = []
     for seed in (1, 2):
-        words = ("--headless", "--driver", "virtual", "--person", seed, "--for", 5, "--out", tmp_path / str(seed))
-        done = within("drive", tmp_path / "session.yaml", *words, "--json")
+        words = ("--headless", "--driver", "virtual", "--person", seed, "--for", 3, "--out", tmp_path / str(seed))
+        done = within("drive", tmp_path / "session.yaml", *words, "--json", "--no-pack")
         assert done.returncode == 0, done.stderr
         assert "by the person " in done.stderr
         bundles.append(results(done)["digest"])

@@ -8,19 +8,28 @@ import pytest
 
 from simconsole.profiles.course_plan import CoursePlan, Curve, Straight
 from simconsole.profiles.files.world_files import load_world
+from simconsole.recording.bundles.bundle import open_bundle
+from simconsole.values.units import DEG_PER_RAD
+from simconsole.world.course import Course
 from simconsole.world.kinds.worlds import open_world
 from simconsole.world.planning import solve
-from tests.drives.random_courses import SHORT, Tracked, random_course, tracked, tracked_on
+from simconsole.world.tools.generate import to_text
+from tests.drives.random_courses import HAND_OVER_M, SHORT, Tracked, random_course, tracked, tracked_on
 from tests.samples import Sample
 
 NOISE = "{delay_ms: 40, localisation: {position_noise_m: 0.02, yaw_noise_deg: 0.2}}"
 CARS = ("hatchback", "light_van", "commonroad_bmw320i")
-PART_M = 1200.0
-"""So far the sample drives over the urban course: bends to both sides, and the roundabout."""
-BENDS_M = 700.0
-"""So far a plain tracker does: bends to both sides, one of them of 12 m."""
-LOOP_PART_M = 1150.0
+PART_M = (645.0, 1130.0)
+"""The sample drives this part of the urban course: bends of 50 and 80 m to both sides, and the roundabout."""
+BENDS_M = (245.0, 650.0)
+"""This part a plain tracker drives: bends to both sides, one of them of 12 m."""
+LOOP_PART_M = 1000.0
 """So far the sample drives over the loop."""
+GATE_PART_M = 260.0
+"""So far the sample drives behind a gate: two bends."""
+FAST_WHEEL_M = (520.0, 720.0)
+"""In this part of its course the wheel is turned fast."""
+WHOLE = (0.0, math.inf)
 
 
 def s_bend(radius_m: float, angle_deg: float) -> CoursePlan:
@@ -31,10 +40,10 @@ def s_bend(radius_m: float, angle_deg: float) -> CoursePlan:
         lane_width_m=3.5,
         speed_limit_kmh=80.0,
         elements=(
-            Straight(length_m=90.0),
+            Straight(length_m=60.0),
             Curve(radius_m=radius_m, angle_deg=angle_deg, ramp_m=3.0),
             Curve(radius_m=radius_m, angle_deg=-angle_deg, ramp_m=3.0),
-            Straight(length_m=60.0),
+            Straight(length_m=30.0),
         ),
     )
 
@@ -79,11 +88,12 @@ def test_an_s_bend_with_ramps_of_3_m(sample: Sample, tmp_path: Path, radius_m: f
 
 
 def test_three_kilometres_at_80_kmh(sample: Sample, tmp_path: Path) -> None:
-    """The sample drives two of its bends, one to each side, and ends in the third."""
+    """The sample drives two of its bends, one to each side."""
     world = solve(loop(), "loop")
     for car in CARS[: sample.of(1, 3)]:
         until_m = math.inf if sample.long else LOOP_PART_M
-        done = tracked(world, car, NOISE, tmp_path / car, until_m=until_m)
+        hand_over_m = HAND_OVER_M if sample.long else None
+        done = tracked(world, car, NOISE, tmp_path / car, until_m=until_m, hand_over_m=hand_over_m)
         holds(done, f"{car}, loop")
         assert done.driven_s < min(until_m, 3000.0) / (70.0 / 3.6), "nor slowly"
 
@@ -92,7 +102,9 @@ def test_behind_a_gate_that_lets_less_pass(sample: Sample, tmp_path: Path) -> No
     """The console tells the autopilot that it starts; one that plans for another gate is 3 m off its lane here."""
     world = random_course(np.random.default_rng(2), SHORT)
     for car in CARS[: sample.of(1, 3)]:
-        done = tracked(world, car, NOISE, tmp_path / car, control="{automatic_lateral_jerk_mps3: 2.5}")
+        until_m = math.inf if sample.long else GATE_PART_M
+        gate = "{automatic_lateral_jerk_mps3: 2.5}"
+        done = tracked(world, car, NOISE, tmp_path / car, control=gate, until_m=until_m)
         holds(done, f"{car}, 2.5 m/s3")
         assert done.reached >= 0.999
 
@@ -103,27 +115,34 @@ def test_plain_trackers_drive_the_demos_course_behind_the_gate(sample: Sample, t
     for tracker in ("stanley", "pure_pursuit")[: sample.of(1, 2)]:
         folder = tmp_path / tracker
         folder.mkdir()
-        until_m = math.inf if sample.long else BENDS_M
-        done = tracked_on(route, "urban", "hatchback", "{delay_ms: 40}", folder, tracker=tracker, until_m=until_m)
+        start_m, until_m = WHOLE if sample.long else BENDS_M
+        hand_over_m = HAND_OVER_M if sample.long else None
+        link, part = "{delay_ms: 40}", (start_m, until_m)
+        done = tracked_on(route, "urban", "hatchback", link, folder, hand_over_m, tracker, "{}", *part)
         print(f"measured: {tracker}: {done}")
         assert not done.stopped
         assert done.max_cm <= 50.0
 
 
 def test_resting_hands_that_a_fast_wheel_carries_along_take_nothing_over(tmp_path: Path) -> None:
-    """A bend of 16 m that begins within 3.3 m, by a slow steering: the motor unwinds the wheel at 590 deg/s."""
+    """A bend of 10 m that ends within 3.3 m, by a slow steering: the motor unwinds the wheel at 600 deg/s."""
     seed = 3241296937210489
     link = f"{{seed: {seed}, delay_ms: 40, localisation: {{position_noise_m: 0.02, yaw_noise_deg: 0.2}}}}"
-    world = random_course(np.random.default_rng(seed))
-    done = tracked(world, "commonroad_bmw320i", link, tmp_path / "course")
-    print(f"measured: a wheel that is turned fast: {done}")
+    (tmp_path / "course.yaml").write_text(to_text(world := random_course(np.random.default_rng(seed)), "random"))
+    start_m, until_m = FAST_WHEEL_M
+    route, car = Course(world), "commonroad_bmw320i"
+    done = tracked_on(route, "course.yaml", car, link, tmp_path, start_m=start_m, until_m=until_m)
+    rates = open_bundle(tmp_path / "bundle").log.table(("motor.wheel_radps",)).column("motor.wheel_radps")
+    print(f"measured: a wheel that is turned at {np.abs(rates).max() * DEG_PER_RAD:.0f} deg/s: {done}")
+    assert np.abs(rates).max() * DEG_PER_RAD > 590.0
     assert not done.stopped
 
 
 def test_urban_course_without_noise_and_delay(sample: Sample, tmp_path: Path) -> None:
     """Over the WebSocket; the long run drives the whole lap."""
-    route, until_m = open_world(load_world("urban")).route, math.inf if sample.long else PART_M
-    done = tracked_on(route, "urban", "hatchback", "{}", tmp_path, until_m=until_m)
+    route, (start_m, until_m) = open_world(load_world("urban")).route, WHOLE if sample.long else PART_M
+    hand_over_m = HAND_OVER_M if sample.long else None
+    done = tracked_on(route, "urban", "hatchback", "{}", tmp_path, hand_over_m, start_m=start_m, until_m=until_m)
     print(f"measured: urban course, no noise, no delay: {done}")
     assert not done.stopped
     assert done.rms_cm <= 0.2

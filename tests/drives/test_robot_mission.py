@@ -17,6 +17,8 @@ from simconsole.drivers.robots.slam.planar import composed
 from simconsole.evaluation.metrics.map_errors import map_errors
 from simconsole.evaluation.metrics.trajectory_errors import trajectory_errors
 from simconsole.profiles.files.loader import profiles_folder
+from simconsole.profiles.files.world_files import load_world
+from simconsole.profiles.world import ArenaProfile
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.replay_bundle import replay_bundle
 from simconsole.values.host.jit import compiled
@@ -32,7 +34,6 @@ from tests.world.arena.shipped_arena import arena
 FIRST = arena().starts[0]
 START = Pose(FIRST.x_m, FIRST.y_m, math.radians(FIRST.yaw_deg))
 TICK_HZ = 200
-DURATION_S = 360
 ACTION = "/tb3_0/navigate_to_pose"
 ERRORS = "odometry: {distance_scale: 1.02, turn_scale: 1.03, slip_m_per_root_m: 0.002, seed: %d}\n"
 COLUMNS = (
@@ -41,19 +42,45 @@ COLUMNS = (
     *("command.target_speed_mps", "ros.refused"),
 )
 """All columns of a whole drive are more than a process of the tests should hold."""
-TARGETS = [Target(spot.name, spot.x_m, spot.y_m, math.radians(spot.yaw_deg)) for spot in arena().targets]
+ROOMS = """schema: 1
+kind: arena
+title: Two rooms with a door between them
+walls:
+  - {closed: true, points: [{x_m: 0, y_m: 0}, {x_m: 3.6, y_m: 0}, {x_m: 3.6, y_m: 2.8}, {x_m: 0, y_m: 2.8}]}
+  - {points: [{x_m: 1.9, y_m: 0}, {x_m: 1.9, y_m: 1.8}]}
+pillars: [{x_m: 2.8, y_m: 1.4, radius_m: 0.15}]
+starts: [{name: tb3_0, x_m: 0.8, y_m: 0.8, yaw_deg: 38.66}]
+targets:
+  - {name: A, x_m: 0.7, y_m: 2.2, yaw_deg: 90}
+  - {name: B, x_m: 2.9, y_m: 2.2, yaw_deg: 0}
+  - {name: C, x_m: 3.0, y_m: 0.6, yaw_deg: -90}
+  - {name: D, x_m: 2.4, y_m: 0.7, yaw_deg: 180}
+  - {name: E, x_m: 1.4, y_m: 0.7, yaw_deg: 0}
+"""
+"""What is behind the wall has to be explored, and a mission takes 66 s. The shipped arena is explored and driven in the
+sample too, without a console: tests/drivers/robots/navigation/test_mission.py."""
+
+
+def targets_of(world: ArenaProfile) -> list[Target]:
+    return [Target(spot.name, spot.x_m, spot.y_m, math.radians(spot.yaw_deg)) for spot in world.targets]
 
 
 class Driven:
     """One drive: what both programs made of it, and what is left of it."""
 
-    def __init__(self, folder: Path, seed: int, duration_s: float = DURATION_S, namespace: str = "") -> None:
+    def __init__(self, folder: Path, seed: int, duration_s: float, namespace: str = "", rooms: bool = False) -> None:
         self.bundle, self.seed = folder / "bundle", seed
+        if rooms:
+            (folder / "rooms.world.yaml").write_text(ROOMS)
+        self.world = str(folder / "rooms.world.yaml") if rooms else "arena"
+        profile = load_world(self.world)
+        assert isinstance(profile, ArenaProfile)
+        self.arena = profile
         self.mapped: slam_node.Mapped | None = None
         self.navigated: navigation_node.Navigated | None = None
         self.url = f"ws://127.0.0.1:{free_port()}"
         session = self._session(folder, seed, duration_s, namespace)
-        with Running(folder, "drive", session, "--out", self.bundle, "--json") as console:
+        with Running(folder, "drive", session, "--out", self.bundle, "--json", "--no-pack") as console:
             self._run(namespace)
             done = console.end()
         assert done.returncode == 0, done.stderr
@@ -66,6 +93,8 @@ class Driven:
         bridge = f"port: {self.url.rpartition(':')[2]}\n    namespace: '{namespace}'\n    link: {{seed: {seed}}}"
         session.write_text(
             shipped.replace("port: 9090", bridge)
+            .replace("world: arena", f"world: {self.world}")
+            .replace("hud: null", "hud: null\n  scene: null\n  report: false")
             .replace("duration_s: 60", f"duration_s: {duration_s}")
             .replace("vehicle: turtlebot3_burger", f"vehicle: {vehicle}")
             .replace("control_period_ms: 20", "control_period_ms: 20\n  answer_timeout_s: 60")
@@ -102,7 +131,7 @@ class Driven:
         assert not slam.is_alive(), "it has not heard that the drive is over"
 
     def mission(self, navigator: Navigator) -> Mission | None:
-        return Mission(navigator, TARGETS)
+        return Mission(navigator, targets_of(self.arena))
 
     def column(self, name: str) -> Any:
         return self.table.column(name)
@@ -154,8 +183,12 @@ class Sent(Driven):
 
 @pytest.fixture(scope="module")
 def driven(tmp_path_factory: pytest.TempPathFactory, module_sample: Sample) -> list[Driven]:
+    """The sample is one drive through two rooms; the full size is twenty through the shipped arena."""
     folders = [tmp_path_factory.mktemp("mission") for _ in range(module_sample.of(1, 20))]
-    return [Driven(folder, (module_sample.seed + number) % 10_000) for number, folder in enumerate(folders)]
+    return [
+        Driven(folder, (module_sample.seed + number) % 10_000, module_sample.of(100, 360), rooms=not module_sample.long)
+        for number, folder in enumerate(folders)
+    ]
 
 
 def test_all_targets_are_reached_without_touching_anything(driven: list[Driven]) -> None:
@@ -163,8 +196,8 @@ def test_all_targets_are_reached_without_touching_anything(driven: list[Driven])
         told = drive.navigated
         assert told is not None
         assert told.ended == "mission done"
-        assert sorted(visit.name for visit in told.visits) == [target.name for target in TARGETS]
-        places = {target.name: target for target in TARGETS}
+        places = {target.name: target for target in targets_of(drive.arena)}
+        assert sorted(visit.name for visit in told.visits) == list(places) == ["A", "B", "C", "D", "E"]
         x, y = drive.column("vehicle.x_m"), drive.column("vehicle.y_m")
         for visit in told.visits:
             assert visit.reached
@@ -172,7 +205,7 @@ def test_all_targets_are_reached_without_touching_anything(driven: list[Driven])
             assert math.hypot(x[row] - places[visit.name].x_m, y[row] - places[visit.name].y_m) < 0.12
         assert drive.column("platform.motion.collisions")[-1] == 0.0
         assert (drive.column("ros.refused") == 0.0).all()
-        assert least_room_m(x, y, drive.column("vehicle.yaw_rad")) >= 0.05
+        assert least_room_m(drive.arena, x, y, drive.column("vehicle.yaw_rad")) >= 0.05
         assert told.explored_s is not None
         first, last = (round(second * TICK_HZ) - 1 for second in (told.explored_s, told.visits[-1].time_s))
         way = drive.column("vehicle.distance_m")
@@ -190,7 +223,7 @@ def test_slam_knows_where_it_is_and_what_stands_there(driven: list[Driven]) -> N
         errors = trajectory_errors(np.array([moment.pose for moment in moments]), true, 5)
         told = drive.poses(rows, *(f"platform.odometry.{name}" for name in ("x_m", "y_m", "yaw_rad")))
         raw = trajectory_errors(np.array([composed(START, Pose(*pose)) for pose in told.tolist()]), true, 5)
-        walls = map_errors(drive.mapped.grid, outlines_of(arena()))
+        walls = map_errors(drive.mapped.grid, outlines_of(drive.arena))
         print(f"{errors}\nraw odometry {raw}\n{walls}")
         assert errors.absolute_rms_m <= 0.05
         assert raw.absolute_rms_m > 3.0 * errors.absolute_rms_m
@@ -205,10 +238,11 @@ def test_it_replays(driven: list[Driven]) -> None:
 
 def test_two_drives_of_one_seed_are_equal(driven: list[Driven], tmp_path: Path) -> None:
     """Whichever of both programs is faster."""
-    again = Driven(tmp_path, driven[0].seed, 15)
+    seconds = 10
+    again = Driven(tmp_path, driven[0].seed, seconds, rooms=driven[0].world != "arena")
     for column in ("vehicle.x_m", "vehicle.yaw_rad", "platform.odometry.x_m", "command.target_speed_mps"):
         found = again.column(column)
-        assert len(found) == 15 * TICK_HZ
+        assert len(found) == seconds * TICK_HZ
         assert (found == driven[0].column(column)[: len(found)]).all()
 
 
@@ -226,9 +260,9 @@ def test_goals_by_action_are_driven_to_under_a_namespace(tmp_path: Path) -> None
     assert drive.column("platform.motion.collisions")[-1] == 0.0
 
 
-def least_room_m(x: Any, y: Any, yaw: Any) -> float:
+def least_room_m(world: ArenaProfile, x: Any, y: Any, yaw: Any) -> float:
     """The least distance from the edge of the body to an obstacle, every tenth tick."""
-    shape, outlines = burger(), outlines_of(arena())
+    shape, outlines = burger(), outlines_of(world)
     x, y, yaw = x[::10], y[::10], yaw[::10]
     places = np.column_stack((x + shape.body_x_m * np.cos(yaw), y + shape.body_x_m * np.sin(yaw)))
     least = math.inf

@@ -10,12 +10,13 @@ from simconsole.recording.bundles.replay_bundle import replay_bundle
 from simconsole.session.lifecycle import drive
 from simconsole.session.resolution import load_session, resolve
 from simconsole.values.signals import Event, Mode
+from tests.drives.random_courses import ASKS, SCRIPT
 from tests.world.nets import TOWN, generated
 
-LEAD = "{gap_m: 30, speeds: [{speed_kmh: 25}, {from_s: 14, speed_kmh: 0}, {from_s: 24, speed_kmh: 20}]}"
+LEAD = "{gap_m: 20, speeds: [{speed_kmh: 25}, {from_s: 7, speed_kmh: 0}, {from_s: 18, speed_kmh: 20}]}"
 BY_ROS = (
     "features: {autopilot: world.yaml}\nmode: {pacing: lockstep, answer_timeout_s: 60}\n"
-    "devices: {driver: virtual, person: {sit_s: 0.5, cruise_kmh: 15, top_gear: 2, autonomy: {distance_m: 5}}}\n"
+    f"devices: {{driver: '{ASKS}'}}\n"
 )
 BY_HAND = "devices: {driver: virtual, person: {sit_s: 0.5, along: route}}\nmode: {pacing: free}\n"
 LINK = "{seed: 3, delay_ms: 40, localisation: {position_noise_m: 0.02, yaw_noise_deg: 0.2}}"
@@ -27,10 +28,11 @@ def test_behind_a_vehicle_that_stops_and_drives_on(driver: str, tmp_path: Path) 
     (tmp_path / "world.yaml").write_text(
         "schema: 1\nkind: roads\ntitle: follow\nmap: {name: map.net.xml}\nroute: {by: random, seed: 3, length_m: 250}\n"
     )
+    (tmp_path / "asks.yaml").write_text(SCRIPT)
     bridge = f"{{port: 0, link: {LINK}}}" if driver == "autopilot" else "null"
     (tmp_path / "session.yaml").write_text(
         f"schema: 1\nenvironment: {{world: world.yaml, traffic: {{vehicles: 0, parked: 0, lead: {LEAD}}}}}\n"
-        "scenario: {vehicle: hatchback, duration_s: 34}\n"
+        "scenario: {vehicle: hatchback, duration_s: 24}\n"
         f"outputs: {{hud: null, scene: null, report: false, bridge: {bridge}}}\n"
         f"{BY_ROS if driver == 'autopilot' else BY_HAND}"
     )

@@ -1,7 +1,7 @@
 """Drives among vehicles and people on the urban course with signals: nobody is touched, nothing is broken.
 
-The full size drives the whole course; the sample for 85 s from a side road over the lights and crossings towards the
-roundabout.
+The full size drives the whole course; the sample for a minute from a side road over the lights and crossings towards
+the roundabout.
 """
 
 from pathlib import Path
@@ -17,17 +17,20 @@ from simconsole.session.lifecycle import drive
 from simconsole.session.resolution import load_session, resolve
 from simconsole.values.signals import FAR, Event, Mode
 from simconsole.world.traffic.road_users import RoadUserKind
+from tests.drives.random_courses import ASKS, SCRIPT
 from tests.paths import ROOT
 from tests.samples import Sample
 
 PART = '["-junction0left", "road1", "road2", "road3", "ring0in-ring0out", "road4", "road5"]'
-PART_S, WHOLE_S = 85, 420
+PART_S, WHOLE_S = 60, 420
 PART_M, WHOLE_M = 250.0, 2500.0
 """So far everybody gets at least, whatever the lights show and who crosses."""
-BY_ROS = (
-    "features: {autopilot: world.yaml}\nmode: {pacing: lockstep, answer_timeout_s: 60}\n"
-    "devices: {driver: virtual, person: {sit_s: 0.5, cruise_kmh: 15, top_gear: 2, autonomy: {distance_m: 5}}}\n"
-)
+SOON = b'offset="65"'
+"""With signals 25 s ahead of their time the sample waits at the first one for some seconds only."""
+BY_ROS = "features: {autopilot: world.yaml}\nmode: {pacing: lockstep, answer_timeout_s: 60}\n"
+RESTS = "devices: {driver: virtual, person: {sit_s: 0.5, cruise_kmh: 15, top_gear: 2, autonomy: {distance_m: 5}}}\n"
+ONLY_ASKS = f"devices: {{driver: '{ASKS}'}}\n"
+"""In the sample nobody rests the hands on the wheel meanwhile."""
 BY_HAND = "devices: {driver: virtual, person: {sit_s: 0.5, along: route, seed: SEED}}\nmode: {pacing: free}\n"
 LINK = "{seed: SEED, delay_ms: 40, localisation: {position_noise_m: 0.02, yaw_noise_deg: 0.2}}"
 RULES = ("red_light", "wrong_way", "off_road", "speeding", "failing_to_yield")
@@ -50,18 +53,20 @@ def driven(driver: str, seed: int, whole: bool, folder: Path) -> Path:
     edges = PART
     if whole:
         edges = (ROOT / "profiles/worlds/urban_signals.yaml").read_text().partition("edges: ")[2].strip().rstrip("}")
-    (folder / "map.net.xml").write_bytes((ROOT / "profiles/worlds/urban_signals.net.xml").read_bytes())
+    net = (ROOT / "profiles/worlds/urban_signals.net.xml").read_bytes()
+    (folder / "map.net.xml").write_bytes(net if whole else net.replace(b'offset="0"', SOON))
     (folder / "world.yaml").write_text(
         "schema: 1\nkind: roads\ntitle: among others\nmap: {name: map.net.xml}\n"
         f"route: {{by: edges, edges: {edges}}}\n"
     )
+    (folder / "asks.yaml").write_text(SCRIPT)
     bridge = f"{{port: 0, link: {LINK}}}" if driver == "autopilot" else "null"
     (folder / "session.yaml").write_text(
         (
             f"schema: 1\nenvironment: {{world: world.yaml, traffic: {{pedestrians: 20, seed: {seed}}}}}\n"
             f"scenario: {{vehicle: hatchback, duration_s: {WHOLE_S if whole else PART_S}}}\n"
             f"outputs: {{hud: null, scene: null, report: false, bridge: {bridge}}}\n"
-            f"{BY_ROS if driver == 'autopilot' else BY_HAND}"
+            f"{BY_ROS + (RESTS if whole else ONLY_ASKS) if driver == 'autopilot' else BY_HAND}"
         ).replace("SEED", str(seed))
     )
     return drive(resolve(load_session(str(folder / "session.yaml"))), folder / "bundle").folder

@@ -16,7 +16,7 @@ from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.replay_bundle import replay_bundle
 from simconsole.recording.bundles.verification import verify
 from simconsole.values.signals import Mode
-from tests.drives.console import Running, environment, simconsole
+from tests.drives.console import Running, environment, within
 from tests.patience import PATIENCE_S
 from tests.ports import free_port
 from tests.samples import Sample
@@ -124,7 +124,7 @@ def test_it_replays_is_reported_and_exported(drives: list[Driven], tmp_path: Pat
         assert found.ticks == 200 * SECONDS
         assert "<svg" in (driven.bundle / "report.html").read_text("utf-8")
         assert (driven.bundle / "scene.rrd").stat().st_size > 10_000
-        done = simconsole(
+        done = within(
             "export", driven.bundle, "--to", "mcap", "--out", tmp_path / f"{driven.bundle.parent.name}.mcap", "--json"
         )
         assert done.returncode == 0, done.stderr

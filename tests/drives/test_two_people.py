@@ -16,7 +16,7 @@ from simconsole.values.signals import Mode
 SESSION = """schema: 1
 environment: {{world: urban}}
 scenario:
-  duration_s: 18
+  duration_s: 13
   platforms:
     - {{name: a, person: {{sit_s: 0.5, cruise_kmh: 15, top_gear: 2, autonomy: {{distance_m: 5}}{takes_back}}}}}
     - name: b

@@ -105,6 +105,7 @@ def drive(case: Case, place: str, crew: Crew | None = None) -> Measured:
 def _driven(index: int, place: str, crew: Crew) -> Measured:
     case = CASES[index]
     track = circuit()
+    track.pass_by(PLACES.values())
     state = track.state_at(PLACES[place])
     fault = case.made(Snapshot(state.tick, HZ, state.vector).t_s + AFTER_S)
     driven = track.drive(state, SECONDS, [fault], crew, finished=Rest())

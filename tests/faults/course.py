@@ -1,6 +1,6 @@
 """Drives over the urban course with the path tracker in the loop: whole, and from any state of an earlier drive."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from copy import copy
 from functools import cache, cached_property
 from typing import Any, NamedTuple
@@ -12,7 +12,6 @@ from simconsole.devices.calibration.cockpit_settings import cockpit_settings
 from simconsole.devices.calibration.inverse_calibration import Intent, raw_sample
 from simconsole.drivers.path_tracker.state_estimator import VehicleMotion
 from simconsole.drivers.path_tracker.tracker import Tracker
-from simconsole.evaluation.checks.memory_recorder import MemoryRecorder
 from simconsole.faults.schedule import with_faults
 from simconsole.profiles.faults import Fault
 from simconsole.profiles.files.loader import parse
@@ -45,8 +44,6 @@ HZ = 250
 PERIOD_TICKS = 5
 SESSION = "schema: 1\nenvironment: {world: urban}\nscenario: {vehicle: hatchback}\ndevices: {driver: none}\n"
 ENGAGE_TICK = 2 * HZ
-BEYOND_M = 1.0
-"""More than the car goes in a period of the controller."""
 REST_S = 2.0
 """Who stands for so long is at rest: nothing new comes in such a drive."""
 LANE_M = 3.5
@@ -239,16 +236,28 @@ class Driven(NamedTuple):
         return bool(abs(self.column("vehicle.vx_mps")[-1]) < STANDING_MPS)
 
 
-class ColumnRecorder(MemoryRecorder):
-    """Keeps some columns alone: all of a drive over the whole course are 200 MB."""
+class Rows:
+    """Keeps some columns alone, for all of a drive over the whole course are 200 MB, or all; no hash, as a log has."""
 
-    def __init__(self, ticks: int, columns: Sequence[int]) -> None:
-        super().__init__(ticks, len(columns))
+    digest = b""
+
+    def __init__(self, ticks: int, width: int, columns: Sequence[int] | None) -> None:
+        self._room = np.empty((ticks, width if columns is None else len(columns)))
         self._columns = columns
+        self.ticks = 0
+
+    @property
+    def vectors(self) -> Row:
+        return self._room[: self.ticks]
+
+    def write(self, snapshot: Snapshot) -> int:
+        return self.write_block(snapshot.tick, snapshot.vector[np.newaxis])[1]
 
     def write_block(self, tick: int, vectors: Row) -> tuple[int, int]:
-        """Keep them of the ticks from `tick` on."""
-        return super().write_block(tick, np.take(vectors, self._columns, axis=1))
+        """Keep the ticks from `tick` on."""
+        begin, self.ticks = self.ticks, self.ticks + len(vectors)
+        self._room[begin : self.ticks] = vectors if self._columns is None else vectors[:, self._columns]
+        return len(vectors), 0
 
 
 class Circuit:
@@ -261,6 +270,7 @@ class Circuit:
         self.tracker = Tracker(self.course)  # fresh: its copies drive
         self.console: Console
         self.console, self.start = assemble(self.resolved, compiled)
+        self.columns = self.console.columns
         self._states: dict[float, ConsoleState] = {}
 
     @cached_property
@@ -290,8 +300,9 @@ class Circuit:
             **({state.tick + 1: Event.REQUEST_MANUAL} if crew.by_hand else {}),
         }
         tracker = controller or LoopTracker(copy(self.tracker), asks, not crew.controller)
-        kept = self.console.columns if columns is None else tuple(columns)
-        recorder = ColumnRecorder(round(seconds * HZ), [self.console.columns.index(name) for name in kept])
+        kept = self.columns if columns is None else tuple(columns)
+        chosen = None if columns is None else [self.columns.index(name) for name in kept]
+        recorder = Rows(round(seconds * HZ), len(self.columns), chosen)
         ratio = self.console.platform.steering_ratio
         person = (
             PersonAtTheWheel(resolved, copy(self.tracker), ratio, start, crew.attentive)
@@ -308,13 +319,20 @@ class Circuit:
 
     def state_at(self, distance_m: float) -> ConsoleState:
         """The state in which a drive over the course has come this far: a row is the whole state."""
-        if distance_m not in self._states:
-            beyond_m = distance_m + BEYOND_M
-            driven = self.drive(self.start, 300.0, finished=lambda shot: shot.vehicle.distance_m > beyond_m)
-            came = driven.column("vehicle.distance_m")
-            index = int(np.flatnonzero(came >= distance_m)[0]) // PERIOD_TICKS * PERIOD_TICKS + PERIOD_TICKS - 1
-            self._states[distance_m] = ConsoleState(index + 1, driven.vectors[index].copy())
+        self.pass_by([distance_m])
         return self._states[distance_m]
+
+    def pass_by(self, distances_m: Iterable[float]) -> None:
+        """Drive once, and keep the state at each of these distances, where the controller has just had its period."""
+        left = sorted(distance_m for distance_m in distances_m if distance_m not in self._states)
+
+        def passed(shot: Snapshot) -> bool:
+            while left and shot.tick % PERIOD_TICKS == 0 and shot.vehicle.distance_m >= left[0]:
+                self._states[left.pop(0)] = ConsoleState(shot.tick, shot.vector.copy())
+            return not left
+
+        if left:
+            self.drive(self.start, 300.0, finished=passed, columns=())
 
 
 @cache

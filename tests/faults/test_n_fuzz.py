@@ -199,7 +199,7 @@ def timed(target: Target, data: bytes, now_ns: int) -> float:
 @pytest.mark.fault("N07")
 @pytest.mark.timeout(7200)
 def test_n07_inputs_by_volume(sample: Sample, measured: Measured) -> None:
-    inputs, seed = sample.of(150_000, 10_000_000), sample.seed
+    inputs, seed = sample.of(50_000, 10_000_000), sample.seed
     chance = random.Random(seed)
     counted: dict[str, int] = {}
     near = now_ns = slow = 0

@@ -14,7 +14,7 @@ from simconsole.session.lifecycle import drive
 from simconsole.values.errors import RecordingError
 from simconsole.values.signals import Event
 from simconsole.values.state_vector import Snapshot
-from tests.drives.console import results, simconsole, within
+from tests.drives.console import results, within
 from tests.faults.disks import DISKS, SIZE_BYTES, Disk, memory
 from tests.faults.recorded import TICKS, session, unfinish
 from tests.patience import pause
@@ -146,7 +146,7 @@ def test_p01_from_the_command_line_every_command_tells_it(script: Path, tmp_path
         (place / "filler").write_bytes(bytes(SIZE_BYTES - (1 << 20)))
         bundle = place / "bundle"
         words = ("--headless", "--driver", f"script:{script}", "--for", 5, "--out", bundle, "--json")
-        done = simconsole("drive", *words)
+        done = within("drive", *words)
         told = results(done)
         assert done.returncode == 1, done.stdout + done.stderr
         assert "Traceback" not in done.stderr

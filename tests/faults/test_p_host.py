@@ -17,6 +17,7 @@ import pytest
 
 from simconsole.bridge.client.bridge_client import BridgeClient
 from simconsole.recording.bundles.verification import verify
+from simconsole.session.worker_programs import SNAPSHOT_CAPACITY
 from tests.drives.console import Running, results
 from tests.faults.test_whole_drives import PERSON
 from tests.patience import PATIENCE_S, wait_until
@@ -37,7 +38,7 @@ from tests.faults.course import BY_HAND, circuit
 
 track = circuit()
 state = track.state_at(150.0)
-heap = [[number, [number]] for number in range(1_000_000)]
+heap = [[number, [number]] for number in range(500_000)]
 EACH = [0] * 128
 
 def resident():
@@ -159,8 +160,8 @@ def children(pid: int) -> list[int]:
 
 
 @contextmanager
-def listening(url: str, minutes: int) -> Iterator[Iterator[int]]:
-    """Three who listen to odometry; yield each simulated minute that /clock has reached, up to the last."""
+def listening(url: str, parts: int, part_s: int) -> Iterator[Iterator[int]]:
+    """Three who listen to odometry; yield each part of the simulated time that /clock has reached, up to the last."""
     with ExitStack() as stack:
         listeners = [stack.enter_context(BridgeClient(url)) for _ in range(4)]
         for listener in listeners[:3]:
@@ -177,18 +178,18 @@ def listening(url: str, minutes: int) -> Iterator[Iterator[int]]:
         for thread in threads:
             thread.start()
 
-        def each_minute() -> Iterator[int]:
+        def each_part() -> Iterator[int]:
             reached = 0
-            while reached < minutes:
+            while reached < parts:
                 received = clock.receive(PATIENCE_S)
                 assert received is not None, "the drive stands"
-                minute = received.message.clock.sec // 60
-                if minute > reached:
-                    reached = minute
-                    yield minute
+                part = received.message.clock.sec // part_s
+                if part > reached:
+                    reached = part
+                    yield part
 
         try:
-            yield each_minute()
+            yield each_part()
         finally:
             ended = True
             for thread in threads:
@@ -200,8 +201,11 @@ def listening(url: str, minutes: int) -> Iterator[Iterator[int]]:
 def test_p08_a_drive_of_eight_hours_takes_no_more_memory_than_its_first_minutes(
     tmp_path: Path, sample: Sample, measured: Measured
 ) -> None:
-    """The program in lockstep with its autopilot and four clients, as fast as it goes; its log is cut meanwhile."""
-    warm, minutes = sample.of(1, 10), sample.of(3, 8 * 60)
+    """The program in lockstep with its autopilot and four clients, as fast as it goes; its log is cut meanwhile.
+
+    Looked at each minute, after ten; the sample looks each ten seconds, in its second minute.
+    """
+    part_s, warm, parts = sample.of(10, 60), sample.of(6, 10), sample.of(12, 8 * 60)
     port, bundle = free_port(), tmp_path / "bundle"
     (tmp_path / "person.yaml").write_text(PERSON)
     (tmp_path / "session.yaml").write_text(SOAK.replace("PORT", str(port)))
@@ -209,10 +213,10 @@ def test_p08_a_drive_of_eight_hours_takes_no_more_memory_than_its_first_minutes(
         core = running.process.pid
         wait_until(lambda: running.process.poll() is not None or (bundle / "drive.log").exists(), "a log")
         held: list[tuple[list[int], list[int]]] = []
-        with listening(f"ws://127.0.0.1:{port}", minutes) as reached:
-            for minute in reached:
+        with listening(f"ws://127.0.0.1:{port}", parts, part_s) as reached:
+            for part in reached:
                 os.truncate(bundle / "drive.log", 0)  # or it would fill the disk: 1.7 GB an hour
-                if minute >= warm:
+                if part >= warm:
                     family = [core, *children(core)]
                     held.append(([resident_bytes(pid) for pid in family], [open_files(pid) for pid in family]))
         for pid in children(core):
@@ -221,7 +225,7 @@ def test_p08_a_drive_of_eight_hours_takes_no_more_memory_than_its_first_minutes(
     assert all(files == held[0][1] for _, files in held), "files stay open"
     resident = np.array([sizes for sizes, _ in held])
     assert resident.shape[1] >= 2, "console and autopilot"
-    grown, hours = resident[-1] - resident[0], (minutes - warm) / 60.0
+    grown, hours = resident[-1] - resident[0], (parts - warm) * part_s / 3600.0
     seen = ", ".join(f"{size / MIB:+.2f} MiB" for size in grown.tolist()) + f" in {hours:.2f} simulated h"
     measured("P08", "resident memory of console and autopilot", seen, "at most 1 MiB an hour")
     assert (grown <= max(1.0, hours) * MIB).all(), resident.tolist()
@@ -238,6 +242,9 @@ mode: {pacing: realtime, tick_hz: 250}
 """
 
 
+FROZEN_TICKS = round(1.1 * SNAPSHOT_CAPACITY)
+
+
 def core_ns(pid: int) -> int:
     """Processor time of the thread that ticks."""
     return int(Path(f"/proc/{pid}/task/{pid}/schedstat").read_text().split()[0])
@@ -246,7 +253,7 @@ def core_ns(pid: int) -> int:
 @pytest.mark.fault("P09")
 def test_p09_a_scene_that_is_frozen_costs_the_core_nothing_and_then_goes_on(tmp_path: Path, measured: Measured) -> None:
     """Stopped for longer than the ring holds. rerun's viewers read the file; they reach no process of ours."""
-    with drive(tmp_path, FROZEN) as driven:
+    with drive(tmp_path, FROZEN, "--no-pack") as driven:
         wait_until(lambda: driven.workers().keys() == {"scene"}, "the scene")
         live = driven.bundle / "scene.live.rrd"
         wait_until(lambda: live.exists() and driven.tick() > TICK_HZ, "a scene that records")
@@ -258,7 +265,7 @@ def test_p09_a_scene_that_is_frozen_costs_the_core_nothing_and_then_goes_on(tmp_
                 os.kill(scene, signal.SIGSTOP)
                 size = live.stat().st_size
             tick, used_ns = driven.tick(), core_ns(driven.core)
-            wait_until(lambda tick=tick: driven.tick() >= tick + 6 * TICK_HZ, "the drive going on")  # type: ignore[misc]
+            wait_until(lambda tick=tick: driven.tick() >= tick + FROZEN_TICKS, "the drive going on")  # type: ignore[misc]
             cost[frozen] = (core_ns(driven.core) - used_ns) / (driven.tick() - tick)
         assert live.stat().st_size == size, "frozen indeed"
         os.kill(scene, signal.SIGCONT)

@@ -20,7 +20,6 @@ RATES_HZ = (50, 250, 1000)
 WILD_MPS2 = 10.0
 MOST_RADPS = 1.0
 LOCK_RAD = math.radians(34.0)
-PATTERN_S = 3.0
 Pattern = Callable[[float, random.Random], float | None]
 """The angle of a command sent so many seconds after the fault began; None: it is not sent."""
 
@@ -63,12 +62,12 @@ class Answer(NamedTuple):
     left: bool
 
 
-def answer(tick_hz: int, pattern: Pattern, period_s: float, seed: int) -> Answer:
+def answer(tick_hz: int, pattern: Pattern, period_s: float, seed: int, seconds: float) -> Answer:
     """Drive a pattern; judge each tick of it."""
     at_speed = ready(tick_hz)
     start = at_speed.state.tick
     sender = Sender(tick_hz, start, pattern, period_s, seed)
-    driven = at_speed.drive(sender, PATTERN_S)
+    driven = at_speed.drive(sender, seconds)
     mode, angle = driven.column("arbitration.mode"), driven.column("command.road_wheel_rad")
     per_tangent = driven.column("vehicle.vx_mps")[:-1] ** 2 / driven.wheelbase_m  # as the car was before each tick
     # A command counts from when it came, if it is plausible at the speed of any tick in which it is the newest.
@@ -97,14 +96,14 @@ def test_r06_autonomy_ends_in_time_after_the_last_plausible_command(
 ) -> None:
     """Every pattern by senders of 100 Hz down to 4 Hz, and by some of any rate."""
     chance = random.Random(sample.seed)
-    periods_s = [0.01, 0.02, 0.05, 0.1, 0.16, 0.19, 0.25]
-    periods_s += [chance.uniform(0.004, 0.4) for _ in range(sample.of(2, 50))]
+    periods_s = [0.01, 0.02, 0.05, 0.1, 0.16, 0.19, 0.25] if sample.long else [0.01, 0.1, 0.19, 0.25]
+    periods_s += [chance.uniform(0.004, 0.4) for _ in range(sample.of(1, 50))]
     bar_s = LEFT_WITHIN_S + 1.0 / tick_hz
     longest_s = 0.0
     for name, pattern in PATTERNS.items():
         for period_s in periods_s:
             seed = chance.randrange(1 << 30)
-            found = answer(tick_hz, pattern, period_s, seed)
+            found = answer(tick_hz, pattern, period_s, seed, sample.of(2, 3))
             longest_s = max(longest_s, found.longest_s)
             assert found.longest_s <= bar_s, (name, period_s, seed)
             assert found.left or name not in ALWAYS, (name, period_s, seed)

@@ -14,7 +14,10 @@ import numpy as np
 import pytest
 from websockets.sync.client import ClientConnection
 
+from simconsole.evaluation.metrics.drive_metrics import metrics
+from simconsole.evaluation.metrics.table import recorded_drive
 from simconsole.evaluation.report.exports import REPORT, write_report
+from simconsole.evaluation.report.page import page
 from simconsole.recording.bundles.bundle import open_bundle
 from simconsole.recording.bundles.replay_bundle import state_at
 from simconsole.recording.reading import LogTable
@@ -30,6 +33,7 @@ from tests.drives.controllers import Controller, command
 from tests.faults.course import CAR_M, HZ, LANE_M, circuit
 from tests.patience import PATIENCE_S
 from tests.ports import free_port
+from tests.samples import Sample
 
 IN_LANE_M = 0.5 * (LANE_M - CAR_M)
 SESSION = """schema: 1
@@ -37,7 +41,7 @@ environment: {world: urban}
 scenario:
   vehicle: hatchback
   duration_s: DURATION
-  faults: [{kind: KIND, at_distance_m: 120}]
+  faults: [{kind: KIND, at_distance_m: 60}]
 features: {autopilot: urban}
 outputs: {bridge: {port: 0}, hud: null, scene: null, report: false}
 devices: {driver: "script:person.yaml"}
@@ -46,7 +50,7 @@ mode: {pacing: lockstep, answer_timeout_s: 60}
 """The faults are the scenario's alone: an autopilot that a busy machine holds up is waited for, and no fault."""
 PERSON = """points:
   - {time_s: 0.0, throttle: 0, brake: 0, clutch: 0, hand_wheel_deg: 0, gear: 0}
-  - {time_s: 3.0, press: [autonomous]}
+  - {time_s: 1.0, press: [autonomous]}
 """
 
 
@@ -65,7 +69,7 @@ class Ending(NamedTuple):
     @property
     def duration_s(self) -> int:
         """How long a drive is to have come to this end, or to have gone on for long."""
-        return SHORT_S if self.reason is not None and self.mode is Mode.MINIMAL_RISK else LONG_S
+        return SHORT_S if self.mode is Mode.MINIMAL_RISK else LONG_S
 
 
 STALE, INVALID = Ending(Reason.COMMAND_STALE, 210.0), Ending(Reason.COMMAND_INVALID, 210.0)
@@ -112,8 +116,17 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
         metafunc.parametrize("kind", ENDINGS if metafunc.config.option.long else ONE_OF_EACH)
 
 
-@pytest.mark.usefixtures("sample")
-def test_a_whole_drive_with_a_fault_ends_as_promised_and_its_report_says_why(kind: str, tmp_path: Path) -> None:
+def reported(bundle: Path, drawn: bool) -> tuple[str, str]:
+    """What the report says, in figures and as a page; with the drawings of the page, or its words alone."""
+    if drawn:
+        return str(write_report(bundle)), (bundle / REPORT).read_text("utf-8")
+    found = metrics(recorded_drive(open_bundle(bundle).log), None)
+    return str(found), page("A drive", found, (), {}, {})
+
+
+def test_a_whole_drive_with_a_fault_ends_as_promised_and_its_report_says_why(
+    kind: str, tmp_path: Path, sample: Sample
+) -> None:
     ending = ENDINGS[kind]
     session = SESSION.replace("KIND", kind).replace("DURATION", str(ending.duration_s))
     (tmp_path / "session.yaml").write_text(session)
@@ -136,8 +149,7 @@ def test_a_whole_drive_with_a_fault_ends_as_promised_and_its_report_says_why(kin
     assert modes[fault + left] == ending.mode
     assert set(modes[-REST_TICKS:]) == {Mode.STOPPED}
     assert abs(table.column("vehicle.vx_mps")[-1]) < 0.1
-    assert reason_label(ending.reason) in str(write_report(tmp_path / "bundle"))
-    assert reason_label(ending.reason) in (tmp_path / "bundle" / REPORT).read_text("utf-8")
+    assert all(reason_label(ending.reason) in told for told in reported(tmp_path / "bundle", sample.long))
 
 
 def test_a_row_of_a_whole_drive_is_a_state_to_drive_on_from(tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ from tests.paths import ROOT
 from tests.patience import wait_until
 from tests.scene.viewer.viewers import live_scene
 
-SIZE_PX = (1280, 720)
+SIZE_PX = (640, 400)
 NEAR = 24
 """How far a colour may be from the one meant, light and shade apart."""
 

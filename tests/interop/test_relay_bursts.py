@@ -36,7 +36,7 @@ def wait_for(web: Client, service: str, key: str, name: str) -> None:
 def test_calls_of_a_client(web: Client, node: Puppet, sample: Sample) -> None:
     node.do("serve", name="/ros/flip")
     wait_for(web, "services", "services", "/ros/flip")
-    for _ in range(sample.of(2, 5)):
+    for _ in range(sample.of(1, 5)):
         for number in range(CALLS):
             web.say(op="call_service", id=number, service="/ros/flip", args={"data": bool(number % 2)})
             pause(1.0 / CALLS_HZ)
@@ -54,7 +54,7 @@ def test_calls_of_a_client_all_at_once(web: Client, node: Puppet) -> None:
 
 def test_calls_of_a_node(web: Client, node: Puppet, sample: Sample) -> None:
     web.say(op="advertise_service", service="/web/flip", type=FLIP)
-    for _ in range(sample.of(2, 5)):
+    for _ in range(sample.of(1, 5)):
         node.do("call", name="/web/flip", count=CALLS, hz=CALLS_HZ)
         for _ in range(CALLS):
             call = web.hear(lambda heard: heard["op"] == "call_service")
@@ -158,7 +158,7 @@ def test_a_goal_of_two_servers_ends_when_one_leaves(web: Client, node: Puppet, o
         order = next(orders)
         web.say(**twice(name, order), id=order)
         web.hear(lambda heard: heard["op"] == "action_result" and heard["id"] == order)
-        return all(each.hears(lambda said: said.get("pursues") == order) for each in (node, other_node))
+        return all(each.hears(lambda said: said.get("pursues") == order, 0.3) for each in (node, other_node))
 
     wait_until(both_are_heard, "a goal that both servers have")
     web.say(**twice(name, 600), id=600)
@@ -212,7 +212,7 @@ def test_messages_of_a_node(web: Client, node: Puppet, sample: Sample) -> None:
 
     wait_until(arrives, "a message")
     for count in range(
-        100 - sample.of(4, 10), 100
+        100 - sample.of(2, 10), 100
     ):  # each another number: what comes late of the attempts before is passed over
         node.do("burst", name="/ros/burst", count=count)
         seen: list[str] = []

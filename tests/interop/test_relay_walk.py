@@ -22,7 +22,7 @@ SETTLED = 500
 @pytest.mark.timeout(7200)
 def test_walk(sample: Sample, record_property: Callable[[str, object], None]) -> None:
     random = Random(sample.seed)
-    steps = sample.of(300, 100_000)
+    steps = sample.of(150, 100_000)
     around = domain()
     with (
         served(around) as console,

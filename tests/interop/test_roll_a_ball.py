@@ -13,8 +13,21 @@ EXAMPLE = ROOT / "examples" / "roll_a_ball"
 
 
 def test_an_rclpy_node_collects_every_cube(tmp_path: Path) -> None:
-    around, session = domain(), str(EXAMPLE / "ros2.yaml")
-    words = (PYTHON, "-m", "simconsole", "drive", session, "--out", str(tmp_path / "bundle"), "--json")
+    """The example's own session; nobody looks at a scene or a report of the drive."""
+    around, session = domain(), tmp_path / "ros2.yaml"
+    shown = (EXAMPLE / session.name).read_text()
+    session.write_text(shown.replace("hud: null", "hud: null\n  scene: null\n  report: false"))
+    words = (
+        PYTHON,
+        "-m",
+        "simconsole",
+        "drive",
+        str(session),
+        "--out",
+        str(tmp_path / "bundle"),
+        "--json",
+        "--no-pack",
+    )
     with program(around, *words) as drive, program(around, PYTHON, str(EXAMPLE / "roll_a_ball_rclpy.py")) as node:
         said, complaint = node.communicate(timeout=PATIENCE_S)
         assert node.returncode == 0, complaint

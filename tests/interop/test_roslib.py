@@ -82,9 +82,10 @@ def test_roslib_drives(
     sample: Sample,
     record_property: Callable[[str, object], None],
 ) -> None:
-    seconds = sample.of(30, 60)
+    seconds = sample.of(15, 60)
     port, bundle = free_port(), tmp_path / "bundle"
     words = ["-m", "simconsole", "drive", lockstep_session(tmp_path, port, seconds), "--out", str(bundle), "--json"]
+    words.append("--no-pack")
     with program(environment(), sys.executable, *words) as drive:
         wait_for_port(port)
         with program(dict(os.environ), *node("drive", f"ws://127.0.0.1:{port}", str(seconds))) as driver:

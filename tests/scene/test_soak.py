@@ -34,7 +34,6 @@ def new_ticks():
 ports = follow.Ports(new_ticks, lambda: second >= seconds)
 follow.follow(ports, job._replace(profile=job.profile.__class__(chunk_s=1e-6)), Path(sys.argv[2]))
 """
-WARM_MIN = 10
 ALLOCATOR_MIB = 4.0
 """Steps in which rerun's threads take memory from the system; an index would take 17 MiB in ten minutes."""
 MIB = 1 << 20
@@ -45,15 +44,15 @@ MIB = 1 << 20
 def test_the_scene_of_a_long_drive_takes_no_more_memory_than_that_of_a_short_one(
     tmp_path: Path, sample: Sample, measured: Measured
 ) -> None:
-    minutes = sample.of(WARM_MIN + 9, 8 * 60)
+    warm, minutes = sample.of(2, 10), sample.of(10, 8 * 60)
     np.save(tmp_path / "rows.npy", rows(7500))
     command = [sys.executable, "-c", FEEDER, str(tmp_path), str(tmp_path / "scene.rrd"), str(minutes)]
     done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT)
     assert done.returncode == 0, done.stderr
-    resident = np.array(done.stdout.split(), dtype=np.int64)[WARM_MIN:]
+    resident = np.array(done.stdout.split(), dtype=np.int64)[warm:]
     part = max(1, len(resident) // 3)
     grown = float(np.median(resident[-part:]) - np.median(resident[:part]))
     hours = (len(resident) - part) / 60.0
     assert grown <= max(ALLOCATOR_MIB, hours) * MIB
     seen = f"{grown / MIB:+.2f} MiB in {hours:.1f} h, {resident[-1] / MIB:.0f} MiB in all"
-    measured("P08", "resident memory of the scene's process", seen, "at most 1 MiB an hour after ten minutes")
+    measured("P08", "resident memory of the scene's process", seen, f"at most 1 MiB an hour after {warm} minutes")

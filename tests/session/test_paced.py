@@ -154,11 +154,11 @@ def processes() -> dict[int, int]:
 
 
 @contextmanager
-def drive(folder: Path, text: str) -> Iterator[Drive]:
+def drive(folder: Path, text: str, *more: str) -> Iterator[Drive]:
     (folder / "passenger.yaml").write_text(ASKS)
     session, bundle = folder / "session.yaml", folder / "bundle"
     session.write_text(text)
-    with Running(folder, "drive", session, "--out", bundle, "--json") as running:
+    with Running(folder, "drive", session, "--out", bundle, "--json", *more) as running:
         try:
             yield Drive(running, bundle)
         except AssertionError as error:
@@ -181,7 +181,7 @@ class Disturbed(NamedTuple):
 @pytest.fixture(scope="module")
 def disturbed(tmp_path_factory: pytest.TempPathFactory) -> Disturbed:
     folder = tmp_path_factory.mktemp("disturbed")
-    with drive(folder, PASSENGER) as driven:
+    with drive(folder, PASSENGER, "--no-pack") as driven:
         wait_until(lambda: set(driven.workers()) == WORKERS, "all workers")
         wait_until(lambda: driven.mode() == Mode.AUTONOMOUS and driven.speed_mps() > 2.0, "autonomy at speed")
         family = driven.family()
@@ -265,7 +265,7 @@ def test_nothing_outlives_a_drive_that_was_interrupted(disturbed: Disturbed) -> 
 
 @pytest.mark.fault("P02")
 def test_nothing_outlives_a_core_that_was_killed(tmp_path: Path, measured: Measured) -> None:
-    with drive(tmp_path, PERSON) as driven:
+    with drive(tmp_path, PERSON, "--no-pack") as driven:
         wait_until(lambda: set(driven.workers()) == WORKERS, "all workers")
         wait_until(lambda: len(driven.family()) >= 5 and driven.tick() > TICK_HZ, "a second of driving")
         family, tick, parents = driven.family(), driven.tick(), processes()
@@ -286,7 +286,7 @@ def test_nothing_outlives_a_core_that_was_killed(tmp_path: Path, measured: Measu
 @pytest.mark.fault("P11")
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])  # by SIGINT the one above ends
 def test_a_signal_ends_the_drive_in_order(tmp_path: Path, number: signal.Signals) -> None:
-    with drive(tmp_path, PLAIN) as driven:
+    with drive(tmp_path, PLAIN, "--no-pack") as driven:
         wait_until(lambda: set(driven.workers()) == {"bridge"} and driven.tick() > 10, "driving")
         family = driven.family()
         os.kill(driven.core, number)
@@ -300,7 +300,7 @@ def test_a_signal_ends_the_drive_in_order(tmp_path: Path, number: signal.Signals
 
 
 def test_closing_the_window_ends_the_drive_in_order(tmp_path: Path) -> None:
-    with drive(tmp_path, PLAIN) as driven:
+    with drive(tmp_path, PLAIN, "--no-pack") as driven:
         wait_until(lambda: set(driven.workers()) == {"bridge"} and driven.tick() > 10, "driving")
         keys = Ring.open(driven.folder / KEY_CODES, writable=True)  # this drive has no window that writes there
         keys.write(np.array([float(Key.END)]), 0)

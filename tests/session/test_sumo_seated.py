@@ -135,7 +135,7 @@ def test_own_configuration_runs_and_its_signals_are_on_topics_and_in_exports(tmp
         wait_for_port(port)
         with client(f"ws://127.0.0.1:{port}") as web:
             web.say(op="subscribe", topic="/traffic_signals", type="simconsole_msgs/TrafficSignals")
-            live = [changes_s(web.message("/traffic_signals")) for _ in range(30)]
+            live = [changes_s(web.message("/traffic_signals")) for _ in range(15)]
         running.process.send_signal(signal.SIGINT)
         assert running.process.wait(PATIENCE_S) == 130
     assert max(map(max, live)) <= 10.0 + 0.1

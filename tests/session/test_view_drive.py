@@ -86,7 +86,7 @@ def test_a_view_of_a_town_that_is_killed_is_shown_again_while_the_drive_goes_on(
 
 
 def test_without_opengl_the_drive_shows_its_instruments(tmp_path: Path) -> None:
-    bundle, said = driven(tmp_path, "dummy")
+    bundle, said = driven(tmp_path, "dummy", "null", "ball")
     assert said.count("the instruments are shown without the road") == 1
     assert "Traceback" not in said
     assert verify(bundle) == []

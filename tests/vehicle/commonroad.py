@@ -1,13 +1,17 @@
 """The models of commonroad-vehicle-models 3.0.2 on ramp-and-hold steering, compiled from their own source by numba."""
 
 import dataclasses
+import hashlib
 import math
+import sys
 import types
 from collections.abc import Callable
+from pathlib import Path as File
 from typing import Any, NamedTuple
 
 import numba
 import numpy as np
+import vehiclemodels
 import vehiclemodels.utils.tire_model as tires
 from numpy.typing import NDArray
 from vehiclemodels.init_mb import init_mb
@@ -18,6 +22,8 @@ from vehiclemodels.utils.steering_constraints import steering_constraints
 from vehiclemodels.utils.vehicle_dynamics_ks_cog import vehicle_dynamics_ks_cog
 from vehiclemodels.vehicle_dynamics_mb import vehicle_dynamics_mb
 from vehiclemodels.vehicle_dynamics_st import vehicle_dynamics_st
+
+from simconsole.values.host.jit import _cached, _Late
 
 STEERING_RADPS = 0.4
 """Their limit of the steering rate."""
@@ -84,35 +90,49 @@ multi_body = _copy(vehicle_dynamics_mb, tireModel=_tires, **_slow)
 single_track = _copy(vehicle_dynamics_st, **_slow)
 
 
-def _runge_kutta(model: Any) -> Any:
-    @numba.njit
-    def run(start: Any, constants: Any, rate: float, ramp_s: float, step_s: float, steps: int, every: int) -> Any:
-        x = start.copy()
-        out = np.empty((steps // every, x.size))
-        for index in range(steps):
-            left = ramp_s - index * step_s
-            share = min(max(left / step_s, 0.0), 1.0)  # the step in which the ramp ends is steered for a part
-            u = [rate * share, 0.0]
-            k1 = np.array(model(x, u, constants))
-            k2 = np.array(model(x + 0.5 * step_s * k1, u, constants))
-            k3 = np.array(model(x + 0.5 * step_s * k2, u, constants))
-            k4 = np.array(model(x + step_s * k3, u, constants))
-            x = x + step_s / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
-            if (index + 1) % every == 0:
-                out[(index + 1) // every - 1] = x
-        return out
-
-    return run
+def _run(start: Any, rate: float, ramp_s: float, step_s: float, steps: int, every: int) -> Any:
+    """Integrate `model` with `constants`, both of which `_runge_kutta` adds, by Runge-Kutta 4."""
+    x = start.copy()
+    out = np.empty((steps // every, x.size))
+    for index in range(steps):
+        left = ramp_s - index * step_s
+        share = min(max(left / step_s, 0.0), 1.0)  # the step in which the ramp ends is steered for a part
+        u = [rate * share, 0.0]
+        k1 = np.array(model(x, u, constants))  # type: ignore[name-defined]  # noqa: F821
+        k2 = np.array(model(x + 0.5 * step_s * k1, u, constants))  # type: ignore[name-defined]  # noqa: F821
+        k3 = np.array(model(x + 0.5 * step_s * k2, u, constants))  # type: ignore[name-defined]  # noqa: F821
+        k4 = np.array(model(x + step_s * k3, u, constants))  # type: ignore[name-defined]  # noqa: F821
+        x = x + step_s / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
+        if (index + 1) % every == 0:
+            out[(index + 1) // every - 1] = x
+    return out
 
 
-_multi_body_run = _runge_kutta(multi_body)
-_single_track_run = _runge_kutta(single_track)
+def _sources() -> str:
+    """Return 16 hex digits that change with their code, their car, this file and Python."""
+    theirs = File(str(vehiclemodels.__file__)).parent
+    text = hashlib.sha256(f"{sys.version}{CONSTANTS}".encode())
+    for file in (File(__file__), *sorted(theirs.rglob("*.py"))):
+        text.update(file.read_bytes())
+    return text.hexdigest()[:16]
+
+
+def _runge_kutta(model: Any, name: str) -> Any:
+    """Return the run of one model; its machine code is kept with that of our kernels, which takes seconds to make."""
+    run = types.FunctionType(_run.__code__, {"__name__": __name__, "np": np}, _run.__name__)
+    run.__module__ = __name__
+    late = _Late(run, lambda: {"model": model, "constants": CONSTANTS})
+    return _cached(late, f"{_sources()}-{name}", _nrt=True)
+
+
+_multi_body_run = _runge_kutta(multi_body, "multi-body")
+_single_track_run = _runge_kutta(single_track, "single-track")
 
 
 def _drive(run: Any, start: list[float], given: Input, step_s: float) -> Any:
     steps = round(DURATION_S / step_s)
     first = np.array(start, dtype=np.float64)
-    return run(first, CONSTANTS, given.rate_radps, given.ramp_s, step_s, steps, round(SAMPLE_S / step_s))
+    return run(first, given.rate_radps, given.ramp_s, step_s, steps, round(SAMPLE_S / step_s))
 
 
 def drive_multi_body(given: Input, step_s: float = 0.002) -> Path:

@@ -170,7 +170,7 @@ def test_holds_after_steering_on_the_spot(slope: float, brakes: dict[str, float]
 
 
 def test_from_any_state_full_brake_brings_rest(sample: Sample) -> None:
-    cars = random_cars(sample.of(250, 5000), sample.seed, 0.5, brake=1.0, clutch=1.0)
+    cars = random_cars(sample.of(100, 5000), sample.seed, 0.5, brake=1.0, clutch=1.0)
     settle(cars, 20.0)
     print(f"at most {speeds_mps(cars).max():.2g} m/s after 20 s")
     assert speeds_mps(cars).max() < 1e-6

@@ -33,7 +33,7 @@ def controller(seen):
     place, lateral_m, _ = route.project(seen.vehicle.x_m, seen.vehicle.y_m, place)
     bend = 2.6 * route.curvature_at(place + 2.0)
     return simconsole.hold_speed(8.0, bend - 0.1 * lateral_m)
-drive = session.run(controller, duration_s=25.0, out=sys.argv[1] + "/bundle")
+drive = session.run(controller, duration_s=14.0, out=sys.argv[1] + "/bundle")
 assert drive.metrics["autonomous"]["lateral_max_m"] < 1.5, drive.metrics["autonomous"]
 assert abs(drive.column("vehicle.pitch_rad")).max() > 0.005
 assert drive.replay().hashes_equal

@@ -94,5 +94,7 @@ def test_the_own_course_and_the_own_road_map_are_driven(session: str, example: A
         assert (folder / "again.yaml").read_text() == (folder / "ring.yaml").read_text()
     else:
         run(folder, "simconsole", "world", "import", "street.xodr")
-    said = run(folder, "simconsole", "drive", f"on_{session}.yaml", "--headless", "--out", "out")
+    driven = folder / f"on_{session}.yaml"
+    driven.write_text(driven.read_text().replace("scene: null", "scene: null, report: false"))  # nobody reads it here
+    said = run(folder, "simconsole", "drive", driven.name, "--headless", "--no-pack", "--out", "out")
     assert "by the person      47.9 m" in said

@@ -31,7 +31,7 @@ def test_figures_are_found_and_the_wheel_stays_slow(
     force: ForceFeedback, sample: Sample, record_property: Callable[[str, object], None]
 ) -> None:
     worst = np.zeros(5)
-    drawn = draws(np.random.default_rng(sample.seed), sample.of(3, 50))
+    drawn = draws(np.random.default_rng(sample.seed), sample.of(1, 50))
     for draw in (SLOW, FAINT, *ENDS[:: sample.of(7, 1)], *drawn):
         wheel = BenchedWheel(force, draw)
         found = identify(wheel.turn, force, 0.4, TICK_HZ)

@@ -126,8 +126,12 @@ def test_acceptance_that_was_given_up_goes_on_after_its_calibration(
             )
     assert {path.name for path in tmp_path.iterdir()} == {"calibrated.yaml", "report.json"}
     said: list[str] = []
+
+    def stopped(cockpit: CockpitProfile, samples: Sequence[DeviceSample]) -> Verdict:
+        return Verdict(True, "the console is in EMERGENCY_STOP", {})
+
     report = accept_cockpit(
-        t500, tmp_path, NOBODY, say=said.append, stops=stops, host={}, known=[t500], virtual=True, pace=unpaced
+        t500, tmp_path, NOBODY, say=said.append, stops=stopped, host={}, known=[t500], virtual=True, pace=unpaced
     )
     assert report["ok"]
     assert report["steps"][1]["how"] == "learnt before"

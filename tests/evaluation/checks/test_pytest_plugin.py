@@ -1,6 +1,7 @@
 """The plugin in a fresh folder, as a lab has it: named in its conftest.py, run by a pytest of its own."""
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -32,29 +33,42 @@ def own_pytest(folder: Path, *arguments: str) -> tuple[int, str]:
     return done.returncode, done.stdout + done.stderr
 
 
+def lab(folder: Path) -> Path:
+    """Write a lab's folder."""
+    (folder / "stands.scenario.yaml").write_text(GOOD)
+    (folder / "conftest.py").write_text('pytest_plugins = ["simconsole.evaluation.checks.pytest_plugin"]\n')
+    (folder / "other.yaml").write_text("no: scenario\n")
+    return folder
+
+
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    (tmp_path / "stands.scenario.yaml").write_text(GOOD)
-    (tmp_path / "conftest.py").write_text('pytest_plugins = ["simconsole.evaluation.checks.pytest_plugin"]\n')
-    (tmp_path / "other.yaml").write_text("no: scenario\n")
-    return tmp_path
+    return lab(tmp_path)
 
 
-def test_scenarios_are_collected_accepted_and_then_passed(folder: Path) -> None:
+@pytest.fixture(scope="module")
+def golden(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of what was accepted in a lab's folder. Not to be changed."""
+    folder = lab(tmp_path_factory.mktemp("accepted"))
+    code, said = own_pytest(folder, "--simconsole-update-golden")
+    assert (code, "1 passed" in said) == (0, True), said
+    return folder / "golden"
+
+
+def test_scenarios_are_collected_accepted_and_then_passed(folder: Path, golden: Path) -> None:
     code, said = own_pytest(folder)
     assert code == 1
     assert "no golden; accept one" in said
-    code, said = own_pytest(folder, "--simconsole-update-golden")
-    assert (code, "1 passed" in said) == (0, True), said
+    shutil.copytree(golden, folder / "golden")
     assert (folder / "golden" / "stands.scenario.csv").is_file()
     code, said = own_pytest(folder, "-k", "stands")
     assert (code, "1 passed" in said) == (0, True), said
 
 
-def test_what_fails_is_told_without_our_trace(folder: Path) -> None:
+def test_what_fails_is_told_without_our_trace(folder: Path, golden: Path) -> None:
     (folder / "moves.scenario.yaml").write_text(BAD)
     (folder / "wrong.scenario.yaml").write_text(WRONG)
-    own_pytest(folder, "--simconsole-update-golden")
+    shutil.copytree(golden, folder / "golden")
     code, said = own_pytest(folder)
     assert (code, "2 failed, 1 passed" in said) == (1, True), said
     assert "tick 1: vehicle.vx_mps: 0.0 not in 1.0 to inf" in said

@@ -3,6 +3,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import msgspec
 import pytest
@@ -20,35 +21,56 @@ from simconsole.session.scene_worker import LIVE_SCENE
 from simconsole.values.errors import RecordingError, WorkerError
 
 
-@pytest.fixture
-def bare(short: Path, tmp_path: Path) -> Path:
-    """A bundle with nothing made from it yet."""
-    folder = Path(shutil.copytree(short, tmp_path / "bare"))
+def without_exports(bundle: Path, folder: Path) -> Path:
+    """Copy a bundle without what was made from it."""
+    shutil.copytree(bundle, folder)
     (folder / REPORT).unlink()
     (folder / SCENE).unlink()
     return folder
 
 
-def test_exports_are_listed_and_change_nothing_of_the_drive(bare: Path) -> None:
-    log = (bare / "drive.log").read_bytes()
-    (bare / LIVE_SCENE).write_bytes(b"what a scene worker saw")
-    metrics = write_exports(bare)
+@pytest.fixture
+def bare(short: Path, tmp_path: Path) -> Path:
+    """A bundle with nothing made from it yet."""
+    return without_exports(short, tmp_path / "bare")
+
+
+class Exported(NamedTuple):
+    """A bundle with its exports, what they found, and what was told meanwhile."""
+
+    folder: Path
+    metrics: dict[str, Any]
+    told: dict[str, list[float]]
+
+
+@pytest.fixture(scope="module")
+def exported(short: Path, tmp_path_factory: pytest.TempPathFactory) -> Exported:
+    """One that a scene worker left its scene in. Not to be changed."""
+    folder = without_exports(short, tmp_path_factory.mktemp("exported") / "bundle")
+    (folder / LIVE_SCENE).write_bytes(b"what a scene worker saw")
+    told: dict[str, list[float]] = {"report": [], "scene": []}
+    return Exported(folder, write_exports(folder, told=lambda what, share: told[what].append(share)), told)
+
+
+def test_exports_are_listed_and_change_nothing_of_the_drive(short: Path, exported: Exported) -> None:
+    bare, metrics, _ = exported
     assert metrics["duration_s"] == 3.0
     driven_m = open_bundle(bare).log.table().column("vehicle.distance_m")[-1]
     # The odometer counts each millisecond, metrics each tick: rocking at the start is longer for the one.
     assert metrics["distance_m"] == pytest.approx(driven_m, rel=1e-3)
-    assert (bare / "drive.log").read_bytes() == log
+    assert (bare / "drive.log").read_bytes() == (short / "drive.log").read_bytes()
     assert verify(bare) == []
     assert {name for name, entry in open_bundle(bare).manifest.files.items() if entry.export} == {REPORT, SCENE}
     assert not (bare / LIVE_SCENE).exists(), "the whole scene takes its place"
 
 
-def test_a_listed_live_scene_gives_way_to_the_whole_one(bare: Path) -> None:
-    (bare / LIVE_SCENE).write_bytes(b"what a scene worker saw")
-    add_export(bare, LIVE_SCENE)
-    write_exports(bare)
-    assert LIVE_SCENE not in open_bundle(bare).manifest.files
-    assert verify(bare) == []
+def test_a_listed_live_scene_gives_way_to_the_whole_one(short: Path, tmp_path: Path) -> None:
+    folder = Path(shutil.copytree(short, tmp_path / "bundle"))
+    (folder / SCENE).rename(folder / LIVE_SCENE)
+    add_export(folder, LIVE_SCENE)
+    write_exports(folder, report=False)
+    assert LIVE_SCENE not in open_bundle(folder).manifest.files
+    assert verify(folder) == []
 
 
 def test_where_the_report_fails_the_scene_is_listed_all_the_same(bare: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -103,9 +125,8 @@ def test_a_scene_is_made_by_a_process_of_its_own(bare: Path, monkeypatch: pytest
     assert (bare / SCENE).stat().st_size > 1000
 
 
-def test_it_is_told_how_much_is_done_and_all_of_it_at_the_end(bare: Path) -> None:
-    told: dict[str, list[float]] = {"report": [], "scene": []}
-    write_exports(bare, told=lambda what, share: told[what].append(share))
+def test_it_is_told_how_much_is_done_and_all_of_it_at_the_end(exported: Exported) -> None:
+    told = exported.told
     for shares in told.values():
         assert shares == sorted(shares)
         assert 0.0 < shares[0] <= shares[-1] <= 1.0

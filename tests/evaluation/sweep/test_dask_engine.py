@@ -70,7 +70,7 @@ def driven_on(url: str, tasks: Sequence[Task]) -> Generator[TaskResult, None, No
 
 
 def test_dasks_workers_give_the_same_though_one_is_killed(tmp_path: Path) -> None:
-    tasks = grip(tmp_path, 24).tasks
+    tasks = grip(tmp_path, 16).tasks
     with cluster(tmp_path, 2) as there, closing(driven_on(there.url, tasks)) as driven:
         results = [next(driven)]
         there.workers[0].kill()

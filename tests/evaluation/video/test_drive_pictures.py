@@ -27,7 +27,7 @@ def resolved(short: Path) -> ResolvedSession:
 
 @pytest.fixture(scope="module")
 def found(short: Path) -> list[VideoFrame]:
-    return list(moments(open_bundle(short).log, 1.0, 2.9, 4))
+    return list(moments(open_bundle(short).log, 1.0, 2.9, 2))
 
 
 def pictures(resolved: ResolvedSession, found: list[VideoFrame], camera: CameraName = "driver") -> list[Pixels]:
@@ -35,9 +35,15 @@ def pictures(resolved: ResolvedSession, found: list[VideoFrame], camera: CameraN
 
 
 @pytest.fixture(scope="module")
-def seen(resolved: ResolvedSession, found: list[VideoFrame]) -> list[Pixels]:
+def driver(resolved: ResolvedSession) -> DrivePictures:
+    """The driver's camera, which has seen nothing yet."""
+    return DrivePictures(resolved, Wanted(*SIZE))
+
+
+@pytest.fixture(scope="module")
+def seen(driver: DrivePictures, found: list[VideoFrame]) -> list[Pixels]:
     """What the driver's camera saw."""
-    return pictures(resolved, found)
+    return list(driver.draw_all(iter(found)))
 
 
 def test_the_same_moments_give_the_same_pictures(
@@ -65,7 +71,8 @@ def test_each_camera_sees_something_else(
     assert (chase[road] != bird[road]).any()
 
 
-def test_the_instruments_remember_what_is_passed_over(resolved: ResolvedSession, found: list[VideoFrame]) -> None:
+@pytest.mark.usefixtures("seen")
+def test_the_instruments_remember_what_is_passed_over(driver: DrivePictures, found: list[VideoFrame]) -> None:
     """Why the car was stopped: STOPPED itself only says that it stands."""
 
     def in_mode(moment: VideoFrame, mode: Mode, reason: Reason) -> VideoFrame:
@@ -76,9 +83,10 @@ def test_the_instruments_remember_what_is_passed_over(resolved: ResolvedSession,
 
     stopping = in_mode(found[0], Mode.MINIMAL_RISK, Reason.DEVICE_LOST)
     stands = in_mode(found[0], Mode.STOPPED, Reason.STANDSTILL)
-    told = DrivePictures(resolved, Wanted(*SIZE))
-    told.pass_over(iter([stopping]))
-    assert (told.draw(stands) != DrivePictures(resolved, Wanted(*SIZE)).draw(stands)).any()
+    untold = driver.draw(stands)
+    assert (driver.draw(stands) == untold).all()
+    driver.pass_over(iter([stopping]))
+    assert (driver.draw(stands) != untold).any()
 
 
 def test_a_size_that_cannot_be_read_is_refused(resolved: ResolvedSession) -> None:

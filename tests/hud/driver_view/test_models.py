@@ -5,7 +5,7 @@ import pytest
 
 from simconsole.hud.driver_view.models import WHEELS, moving_frames, vehicle_model, world_model
 from simconsole.hud.driver_view.motion import ShownVehicle
-from simconsole.hud.driver_view.scene import world_parts
+from simconsole.hud.driver_view.scene import Part, world_parts
 from simconsole.hud.driver_view.vehicle_body import WHEEL_RADIUS_M, Size, vehicle_meshes
 from simconsole.profiles.files.loader import load
 from simconsole.profiles.world import CourseProfile
@@ -19,9 +19,20 @@ BALL = Size(0.4, 0.4, 0.4, 0.2, 0.4)
 MOST_BYTES = 1_000_000
 
 
-def test_the_urban_course_is_complete_and_small() -> None:
+def test_the_urban_course_is_complete_and_small(monkeypatch: pytest.MonkeyPatch) -> None:
     drawing = draw(Course(load("worlds", "urban", CourseProfile)))
+    parts = world_parts(drawing, ((0.0, 50.0),))
+    asked: list[object] = []
+
+    def again(*given: object) -> tuple[Part, ...]:
+        """Return the parts of this drawing, which take a second to make."""
+        asked.extend(given[:2])
+        return parts
+
+    monkeypatch.setattr("simconsole.hud.driver_view.models.world_parts", again)
     data = world_model(drawing, ((0.0, 50.0),))
+    assert asked[0] is drawing
+    assert asked[1:] == [((0.0, 50.0),)]
     assert 4 * len(data) / 3 < MOST_BYTES
     content, binary = read(data)
     meshes = {node["name"]: node["mesh"] for node in content["nodes"] if "mesh" in node}
@@ -35,7 +46,7 @@ def test_the_urban_course_is_complete_and_small() -> None:
         "crossings": 3,
         "stop_lines": 3,
     }
-    for part in world_parts(drawing, ((0.0, 50.0),)):
+    for part in parts:
         if part.name == "verges":
             assert len(part.mesh) == 0  # a town has kerbs
             continue

@@ -19,7 +19,7 @@ from simconsole.profiles.files.loader import load
 from simconsole.profiles.files.world_files import load_world
 from simconsole.profiles.world import CourseProfile, RoadsProfile
 from simconsole.world.course import Course
-from simconsole.world.drawing import draw
+from simconsole.world.drawing import Drawing, draw
 from simconsole.world.kinds.worlds import open_map, open_world
 from simconsole.world.roads.road_drawing import beside
 from tests.samples import Sample
@@ -33,9 +33,19 @@ def course() -> Course:
 
 
 @pytest.fixture(scope="module")
-def meshes(course: Course) -> RoadMeshes:
-    drawing = draw(course)
-    return road_meshes(drawing, occupancy_of(drawing))
+def drawing(course: Course) -> Drawing:
+    return draw(course)
+
+
+@pytest.fixture(scope="module")
+def taken(drawing: Drawing) -> Occupancy:
+    """The ground that the road takes. Not to be changed."""
+    return occupancy_of(drawing)
+
+
+@pytest.fixture(scope="module")
+def meshes(drawing: Drawing, taken: Occupancy) -> RoadMeshes:
+    return road_meshes(drawing, taken)
 
 
 def test_markings_lie_on_the_lane_geometry(course: Course, meshes: RoadMeshes) -> None:
@@ -71,8 +81,8 @@ def test_markings_of_a_road_map_lie_on_the_borders_of_its_lanes(name: str, sampl
         assert away.min() < 0.5 * LINE_M + MARKING_M, point
 
 
-def test_markings_follow_every_bend_of_the_lane(course: Course, meshes: RoadMeshes) -> None:
-    edges = [line for line in draw(course).edges if len(line) > 20]
+def test_markings_follow_every_bend_of_the_lane(course: Course, drawing: Drawing, meshes: RoadMeshes) -> None:
+    edges = [line for line in drawing.edges if len(line) > 20]
     points = np.vstack([thinned(line) for line in edges])
     s, lateral = course.project_all(points[:, 0], points[:, 1])
     paint = meshes.markings["position"].astype(float)
@@ -81,8 +91,8 @@ def test_markings_follow_every_bend_of_the_lane(course: Course, meshes: RoadMesh
         assert nearest < 0.5 * LINE_M + MARKING_M, (s[index], lateral[index])
 
 
-def test_thinned_lines_stay_where_they_were(course: Course) -> None:
-    lines = draw(course).edges
+def test_thinned_lines_stay_where_they_were(drawing: Drawing) -> None:
+    lines = drawing.edges
     for line in lines:
         sparse = thinned(line)
         assert (sparse[0] == line[0]).all()
@@ -131,14 +141,13 @@ def test_dashes_are_as_long_as_they_should_be_and_keep_the_bend() -> None:
         assert np.abs(np.hypot(*dash.T) - 25.0).max() < MARKING_M
 
 
-def test_the_road_takes_its_ground(course: Course) -> None:
-    taken: Occupancy = occupancy_of(draw(course))
+def test_the_road_takes_its_ground(course: Course, taken: Occupancy) -> None:
     assert taken.is_taken(course.offset(0.0, 0.0, course.length_m)).all()
 
 
-def test_a_road_outside_of_towns_has_verges_instead_of_kerbs(course: Course) -> None:
-    drawing = draw(course)
-    taken = occupancy_of(drawing)
+def test_a_road_outside_of_towns_has_verges_instead_of_kerbs(
+    course: Course, drawing: Drawing, taken: Occupancy
+) -> None:
     town, country = road_meshes(drawing, taken, ((0.0, 50.0),)), road_meshes(drawing, taken, ((0.0, 100.0),))
     assert len(town.kerbs) > len(town.verges) == 0
     assert len(country.verges) > len(country.kerbs) == 0

@@ -1,16 +1,28 @@
 import numpy as np
+import pytest
 
 from simconsole.hud.driver_view.camera import Camera, Lens, rotation
 from simconsole.hud.driver_view.mesh import Box, box, joined
-from simconsole.hud.driver_view.scene import in_sight, pieces, view_scene
+from simconsole.hud.driver_view.scene import ViewScene, in_sight, pieces, view_scene
 from simconsole.hud.driver_view.vehicle_body import Size
 from simconsole.profiles.files.loader import load
 from simconsole.profiles.world import CourseProfile
 from simconsole.world.course import Course
-from simconsole.world.drawing import draw
+from simconsole.world.drawing import Drawing, draw
 from tests.samples import Sample
 
 SIZE = Size(3.99, 1.75, 1.45, 0.75, 2.5)
+
+
+@pytest.fixture(scope="module")
+def drawing() -> Drawing:
+    return draw(Course(load("worlds", "urban", CourseProfile)))
+
+
+@pytest.fixture(scope="module")
+def scene(drawing: Drawing) -> ViewScene:
+    """The town as it is drawn. Not to be changed."""
+    return view_scene(drawing, ((0.0, 50.0),), SIZE)
 
 
 def test_pieces_are_the_mesh_in_another_order() -> None:
@@ -24,11 +36,10 @@ def test_pieces_are_the_mesh_in_another_order() -> None:
         assert np.linalg.norm(corners - centre, axis=1).max() <= radius + 1e-4
 
 
-def test_nothing_that_a_camera_sees_is_left_out(sample: Sample) -> None:
+def test_nothing_that_a_camera_sees_is_left_out(scene: ViewScene, sample: Sample) -> None:
     """A vertex inside the picture and within reach belongs to a run that is drawn."""
     generator = np.random.Generator(np.random.PCG64(sample.seed))
-    course = Course(load("worlds", "urban", CourseProfile))
-    solids = view_scene(draw(course), ((0.0, 50.0),), SIZE).solids
+    solids = scene.solids
     corners = solids.vertices["position"].astype(float)
     for _ in range(sample.of(20, 500)):
         eye = np.array((*corners[generator.integers(len(corners)), :2] + generator.normal(0.0, 20.0, 2), 1.2))
@@ -52,9 +63,8 @@ def test_a_session_without_a_world_has_a_plain_to_move_over() -> None:
     assert in_sight(scene.solids, np.eye(4), 10.0, np.zeros(3)) == []
 
 
-def test_every_light_of_the_drawing_has_a_post() -> None:
-    drawing = draw(Course(load("worlds", "urban", CourseProfile)))
-    with_lights = view_scene(drawing, ((0.0, 50.0),), SIZE).solids
+def test_every_light_of_the_drawing_has_a_post(drawing: Drawing, scene: ViewScene) -> None:
+    with_lights = scene.solids
     without = view_scene(drawing._replace(lights=()), ((0.0, 50.0),), SIZE).solids
     assert len(drawing.lights) > 0
     assert len(with_lights.vertices) > len(without.vertices)

@@ -1,3 +1,5 @@
+from copy import deepcopy
+
 import numpy as np
 
 from simconsole.hud.driver_view.mesh import Material, Vertices, joined
@@ -14,10 +16,11 @@ from simconsole.world.triangles import triangulate
 def test_nothing_stands_on_the_road_and_every_drive_has_the_same_town() -> None:
     course = Course(load("worlds", "urban", CourseProfile))
     drawing = draw(course)
-    built = [joined(surroundings(drawing.path, ((0.0, 50.0),), occupancy_of(drawing))) for _ in range(2)]
+    taken = occupancy_of(drawing)
+    built = [joined(surroundings(drawing.path, ((0.0, 50.0),), deepcopy(taken))) for _ in range(2)]
     assert (built[0] == built[1]).all()
     low = built[0]["position"][built[0]["position"][:, 2] < 1.9].astype(float)
-    assert not occupancy_of(drawing).is_taken(low[:, :2]).any()
+    assert not taken.is_taken(low[:, :2]).any()
     assert (built[0]["colour"][:, 3] == Material.WALL).sum() > 1000
 
 

@@ -37,8 +37,8 @@ if sys.argv[3] == "die":
             import os, signal
             os.kill(os.getpid(), signal.SIGKILL)
 states = iter(["nobody"] * 2 + ["1 client"] * 9 + ["lost"] * 999)
-link = (lambda: next(states)) if sys.argv[3] == "link" else lambda: None
-if sys.argv[3] == "plans":
+link = (lambda: next(states)) if sys.argv[3] == "beside" else lambda: None
+if sys.argv[3] == "beside":
     told = iter([PlannedPath(400_000_000 * number, np.ones((21, 4))) for number in range(1, 11)])
     def plans():
         plan = next(told, None)
@@ -77,6 +77,20 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
+def in_whole(whole: Path) -> dict[str, int]:
+    """The rows of each of its entities."""
+    return contents(whole)
+
+
+@pytest.fixture(scope="module")
+def beside(tmp_path_factory: pytest.TempPathFactory) -> dict[str, int]:
+    """The rows of each entity of the same drive beside which all is told that no state vector holds."""
+    code, path = follow_apart(tmp_path_factory.mktemp("beside"), "beside")
+    assert code == 0
+    return contents(path)
+
+
+@pytest.fixture(scope="module")
 def killed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """What was written of the same drive when the scene was killed in it. Put back what a test changes."""
     code, path = follow_apart(tmp_path_factory.mktemp("killed"), "die")
@@ -84,12 +98,11 @@ def killed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def test_a_live_drive_is_recorded_whole(whole: Path) -> None:
-    found = contents(whole)
-    assert set(found) >= WORLD | DRIVE
-    assert found["/world/ego"] == 600
-    assert found["/lanes/mode"] == 5 + 1
-    assert found["/log"] == 7
+def test_a_live_drive_is_recorded_whole(in_whole: dict[str, int]) -> None:
+    assert set(in_whole) >= WORLD | DRIVE
+    assert in_whole["/world/ego"] == 600
+    assert in_whole["/lanes/mode"] == 5 + 1
+    assert in_whole["/log"] == 7
 
 
 def test_a_killed_scene_leaves_what_it_had_written(killed: Path) -> None:
@@ -121,25 +134,19 @@ def test_a_scene_that_was_restarted_goes_on_in_the_same_file(killed: Path) -> No
     assert found["/world/road/surface"] == 2, "said again by the new process"
 
 
-def test_how_the_bridge_stands_is_a_lane_of_a_live_drive_that_has_one(whole: Path, tmp_path: Path) -> None:
-    code, path = follow_apart(tmp_path, "link")
-    assert code == 0
-    assert contents(path)["/health/bridge"] == 3 + 1
-    assert contents(whole)["/health/bridge"] == 1, "its colours only"
+def test_how_the_bridge_stands_is_a_lane_of_a_live_drive_that_has_one(
+    in_whole: dict[str, int], beside: dict[str, int]
+) -> None:
+    assert beside["/health/bridge"] == 3 + 1
+    assert in_whole["/health/bridge"] == 1, "its colours only"
 
 
-def test_pictures_latencies_and_words_are_shown_at_the_newest_tick(tmp_path: Path) -> None:
-    code, path = follow_apart(tmp_path, "beside")
-    assert code == 0
-    found = contents(path)
-    assert 2 <= found["/camera"] <= 7, "each picture once, and none that was not the newest"
-    assert 4 <= found["/latency"] <= 8, "once a second of the clock, of 30 batches"
-    assert found["/log"] == 7 + 1 + 1, "the operator's act and the supervisor's notice"
+def test_pictures_latencies_and_words_are_shown_at_the_newest_tick(beside: dict[str, int]) -> None:
+    assert 2 <= beside["/camera"] <= 7, "each picture once, and none that was not the newest"
+    assert 4 <= beside["/latency"] <= 8, "once a second of the clock, of 30 batches"
+    assert beside["/log"] == 7 + 1 + 1, "the operator's act and the supervisor's notice"
 
 
-def test_plans_are_shown_live_as_in_the_recording_and_go_when_nobody_renews_them(tmp_path: Path) -> None:
-    code, path = follow_apart(tmp_path, "plans")
-    assert code == 0
-    found = contents(path)
+def test_plans_are_shown_live_as_in_the_recording_and_go_when_nobody_renews_them(beside: dict[str, int]) -> None:
     for entity in ("/world/path/plan", "/world/path/plan/places", "/map/path/plan"):
-        assert found[entity] == 1 + 10 + 1, entity
+        assert beside[entity] == 1 + 10 + 1, entity

@@ -80,7 +80,7 @@ def test_a_viewer_that_does_not_read_keeps_nothing_from_the_others(tmp_path: Pat
         wait_until(fed(server, lambda: frozen.sees(PATH) == driven), "a viewer")
         os.kill(frozen.process.pid, signal.SIGSTOP)
         with viewer(server.addresses.native, tmp_path / "other.rrd") as other:
-            live_scene(path, 3 * TWO_MINUTES_S, ROOT)
+            live_scene(path, 2 * TWO_MINUTES_S, ROOT)
             more = pieces(path, PATH)
             wait_until(fed(server, lambda: other.sees(PATH) == more), "all of it, for the other")
         os.kill(frozen.process.pid, signal.SIGCONT)

@@ -17,15 +17,19 @@ class Viewer:
     def __init__(self, process: "subprocess.Popen[bytes]", path: Path) -> None:
         self.process = process
         self.path = path
+        self._printed: tuple[int, str] = 0, ""
+        """The size that what was saved had when it was last printed, and that print."""
 
     def sees(self, entity: str) -> int:
         """How many pieces of an entity have come; what is still being written does not count."""
         if not self.path.exists():
             return 0
-        copy = self.path.with_suffix(".copy.rrd")
-        copy.write_bytes(self.path.read_bytes())
-        printed = rerun_rrd("print", str(copy)).stdout
-        return printed.count(f" - {entity} - ")
+        content = self.path.read_bytes()
+        if len(content) != self._printed[0]:
+            copy = self.path.with_suffix(".copy.rrd")
+            copy.write_bytes(content)
+            self._printed = len(content), rerun_rrd("print", str(copy)).stdout
+        return self._printed[1].count(f" - {entity} - ")
 
 
 @contextmanager

@@ -38,18 +38,18 @@ BAND = Advice(Advised.SPEED, 8.0, 11.0, 10.5)
 SESSION = """\
 schema: 1
 environment: {world: world.yaml}
-scenario: {vehicle: hatchback, duration_s: 40, start: {x_m: 240}}
+scenario: {vehicle: hatchback, duration_s: 27, start: {x_m: 320}}
 features: {speed_advice: true}
 outputs: {hud: null, scene: null, report: false, bridge: BRIDGE}
 devices:
   driver: virtual
   person: {title: drives, sit_s: 0.3, along: route, seed: 1}
-mode: {pacing: realtime, tick_hz: 250}
+mode: {pacing: realtime, tick_hz: 100}
 """
 
 
-GREEN_S = 30
-"""The light on the way, 219 m ahead, is red until then; at the limit the car would be there 10 s before."""
+GREEN_S = 22
+"""The light on the way, 139 m ahead, is red until then; at the limit the car would be there 8 s before."""
 
 
 def session(folder: Path, bridge: str = "{port: 0}") -> Path:

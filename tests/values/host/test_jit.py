@@ -292,11 +292,11 @@ print(*(sum(compiled(each).stats.cache_misses.values()) for each in (quartered, 
 """
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), *sys.path])}
     running = [
-        subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, env=environment) for _ in range(3)
+        subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, env=environment) for _ in range(2)
     ]
     said = [process.communicate()[0].split() for process in running]
-    assert [process.returncode for process in running] == [0, 0, 0]
-    assert sorted(misses for misses, _ in said) == [b"0", b"0", b"1"]
+    assert [process.returncode for process in running] == [0, 0]
+    assert sorted(misses for misses, _ in said) == [b"0", b"1"]
 
 
 def test_only_kernels_and_constants_are_accepted() -> None:

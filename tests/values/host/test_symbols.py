@@ -22,7 +22,7 @@ LINES = "\n".join(
             for again in range(int(row[at]) % 3):
                 part = part * 0.7 + math.cos(scale + again) * {line}.5
 """
-    for line in range(40)
+    for line in range(8)
 )
 PROGRAM = f"""
 import math

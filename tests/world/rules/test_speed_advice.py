@@ -29,7 +29,7 @@ from simconsole.world.rules.speed_advice import (
 from tests.samples import Measured, Sample
 
 LIMIT_MPS = 50.0 / 3.6
-SHORT, FULL = 40, 1000
+SHORT, FULL = 25, 1000
 PERIOD_S, MESSAGES_S = 0.02, 0.1
 SCANNED = 60
 SETTLED_S, BESIDE_MPS = 0.5, 0.3
@@ -135,6 +135,15 @@ class Approach(NamedTuple):
                     found.append((max(begin - now_s, 0.0), end - now_s))
         return tuple(found)
 
+    def is_green(self, now_s: float) -> bool:
+        """Whether it is green now."""
+        left_s = (now_s + self.offset_s) % sum(length for _, length in self.phases)
+        for green, length in self.phases:
+            if left_s < length:
+                return green
+            left_s -= length
+        return self.phases[0][0]
+
     def legal(self) -> bool:
         """Whether some legal speed, kept all the way, passes the line at green: each is driven, in small steps."""
         speeds = np.linspace(min(LEAST_MPS, self.limit_mps), self.limit_mps, SCANNED)
@@ -221,8 +230,9 @@ def driven(approach: Approach, rng: np.random.Generator, advised: bool = True) -
         elif shown.kind is not Advised.SPEED:
             followed = approach.limit_mps if shown is NO_ADVICE else rolling_mps(left - 1.0)
         accel = min(max(-DOWN_MPS2, (followed - speed) / 0.1), UP_MPS2)
-        goes = approach.windows(now_s)[0][0] <= 0.0
-        if not goes and shown.kind is not Advised.SPEED and speed**2 < 2.0 * 4.0 * left:  # else it is too late to stop
+        if (
+            not approach.is_green(now_s) and shown.kind is not Advised.SPEED and speed**2 < 2.0 * 4.0 * left
+        ):  # else it is too late to stop
             accel = min(accel, max(-4.0, (math.sqrt(2.0 * 1.5 * max(left - 1.0, 0.0)) - speed) / 0.1))
         stood_s += PERIOD_S * (speed < 0.1)
         speed = max(0.0, speed + PERIOD_S * accel)

@@ -4,6 +4,7 @@ import math
 import signal
 from collections.abc import Callable
 from contextlib import ExitStack
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from simconsole.profiles.files.world_files import load_world
 from simconsole.values.errors import ProfileError
 from simconsole.values.signals import SignalState
 from simconsole.world.kinds.worlds import open_world
+from simconsole.world.route import Route
 from simconsole.world.sumo_traffic import ego as ego_module
 from simconsole.world.sumo_traffic.ego import CLEAR_M, EGO, has_jumped
 from simconsole.world.traffic.road_users import NOBODY, Box, RoadUser, RoadUserKind, users
@@ -24,8 +26,14 @@ ROAD0 = '<route id="r" edges="road0 road1 road2"/>'
 STEP_S = 0.04
 
 
+@cache
+def route() -> Route:
+    """Return the route of the map: it is asked at thousands of places."""
+    return open_world(load_world("urban_signals")).route
+
+
 def on_route(s_m: float, speed_mps: float = 0.0) -> Box:
-    place = open_world(load_world("urban_signals")).route.at(s_m)
+    place = route().at(s_m)
     return box(place.x_m, place.y_m, place.yaw_rad, speed_mps)
 
 
@@ -36,7 +44,7 @@ def only(traffic_users: np.ndarray) -> RoadUser:
 
 def test_ego_is_in_sumo_exactly_where_it_is_in_the_console() -> None:
     """Trap 3 too: over the whole route and beyond its end, off the road and standing, SUMO never takes it over."""
-    length_m = open_world(load_world("urban_signals")).route.length_m
+    length_m = route().length_m
     ways = [on_route(s_m, 20.0) for s_m in np.arange(0.0, length_m, 0.8)]
     last = ways[-1]
     ways += [last._replace(x_m=last.x_m + 0.8 * math.cos(last.yaw_rad) * k, speed_mps=20.0) for k in range(300)]
@@ -56,7 +64,7 @@ def test_ego_that_drives_on_after_the_end_of_its_route_in_sumo_stays_exactly_the
 ) -> None:
     """The world's route is a loop; in SUMO it is repeated up to LONG_M, here once only, and driven half again."""
     monkeypatch.setattr(ego_module, "LONG_M", 1.0)
-    length_m = open_world(load_world("urban_signals")).route.length_m
+    length_m = route().length_m
     ways = [on_route(s_m % length_m, 80.0) for s_m in np.arange(0.0, 1.5 * length_m, 3.2)]
     with sumo_traffic(ways[0], vehicles=10) as traffic:
         for way in ways:
