@@ -15,7 +15,11 @@ from simconsole.values.units import NS_PER_S
 
 
 class Receipts:
-    """A worker's part of the latency statistics, written to a file once a second."""
+    """A worker's part of the latency statistics, written to a file once a second.
+
+    For the first time a second after the first record: a worker that is restarted leaves there what the one before it
+    had counted until it has as much to say, and says nothing of a drive that ends before.
+    """
 
     SAVE_NS: Final = NS_PER_S
 
@@ -25,7 +29,7 @@ class Receipts:
         self._latencies = LatencyStatistics(clock_ns)
         self._number = 0
         self._fresh = False
-        self._saved_ns = clock_ns()
+        self._saved_ns: int | None = None
 
     def received(self, record: Record) -> None:
         """Note a record; one that was noted before is not counted again."""
@@ -43,6 +47,8 @@ class Receipts:
 
     def _save(self) -> None:
         now_ns = self._clock_ns()
+        if self._saved_ns is None:
+            self._saved_ns = now_ns
         if now_ns - self._saved_ns < self.SAVE_NS:
             return
         self._saved_ns = now_ns

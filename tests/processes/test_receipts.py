@@ -37,13 +37,37 @@ def test_a_worker_that_is_late_is_found_at_receive_or_at_draw(tmp_path: Path, re
     assert 80 < found["draw, hud"]["count"] < 200, "saved once a second, each picture once"
 
 
+def test_a_restarted_worker_that_has_drawn_nothing_yet_leaves_what_the_one_before_it_had_counted(
+    tmp_path: Path,
+) -> None:
+    """It takes seconds to open its window, and then receives before it draws."""
+    clock, path = Clock({}), tmp_path / f"{LATENCY}.hud.json"
+    before = Receipts(path, clock.read)
+    for number in range(1, 200):
+        clock.now_ns += 10_000_000
+        before.received(record(number, clock.now_ns))
+        before.drawn()
+    counted = latencies_of(tmp_path, LATENCY)
+    assert list(counted) == ["receive, hud", "draw, hud"]
+    after = Receipts(path, clock.read)
+    clock.now_ns += 3_000_000_000
+    after.received(record(500, clock.now_ns))
+    assert latencies_of(tmp_path, LATENCY) == counted
+    after.drawn()
+    clock.now_ns += 1_000_000_000
+    after.received(record(750, clock.now_ns))
+    found = latencies_of(tmp_path, LATENCY)
+    assert (found["receive, hud"]["count"], found["draw, hud"]["count"]) == (2, 1)
+
+
 def test_a_full_disk_of_the_run_folder_harms_no_worker(tmp_path: Path) -> None:
     clock = Clock({})
     receipts = Receipts(tmp_path / "gone" / f"{LATENCY}.hud.json", clock.read)
-    clock.now_ns += 2_000_000_000
-    receipts.received(record(1, clock.now_ns))
+    for number in (1, 2):
+        clock.now_ns += 2_000_000_000
+        receipts.received(record(number, clock.now_ns))
     (tmp_path / "gone").mkdir()
     clock.now_ns += 2_000_000_000
-    receipts.received(record(2, clock.now_ns))
+    receipts.received(record(3, clock.now_ns))
     found = latencies_of(tmp_path / "gone", LATENCY)
-    assert found["receive, hud"]["count"] == 2, "counted all the same, and saved when it can be"
+    assert found["receive, hud"]["count"] == 3, "counted all the same, and saved when it can be"
