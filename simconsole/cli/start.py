@@ -7,7 +7,8 @@ import msgspec
 
 from simconsole.devices.sources.sdl_source import SdlSource
 from simconsole.hud.start_page import Offer, StartPage, opened
-from simconsole.hud.window.start_window import choose, has_display
+from simconsole.hud.window.sdl_display import has_display
+from simconsole.hud.window.start_window import choose
 from simconsole.profiles.device import CockpitProfile
 from simconsole.profiles.files.loader import load, names
 from simconsole.profiles.files.titles import shipped
@@ -77,7 +78,8 @@ def ask(session: SessionProfile, message: str) -> SessionProfile | None:
     try:
         page = choose(found.page, session.outputs.hud or HudProfile()) if has_display() else None
         left = page is None and has_display()
-    except WorkerError:
+    except WorkerError as problem:
+        _say(str(problem))
         page, left = None, False
     if left:
         return None

@@ -20,6 +20,7 @@ from simconsole.hud.window.displays import Span, display_places, named_displays,
 from simconsole.hud.window.habits import Habits, habits_of
 from simconsole.hud.window.ports import DriverWindow, Motion
 from simconsole.hud.window.pygame_window import Window, dress_window, placed
+from simconsole.hud.window.sdl_display import start_display
 from simconsole.profiles.view import DriverViewProfile, HudProfile
 from simconsole.values.errors import WorkerError
 from simconsole.values.state_vector import Snapshot
@@ -55,7 +56,7 @@ class ViewWindow:
 
         try:
             pygame.display.quit()  # one that this process opened before, for joysticks, may be of a kind without OpenGL
-            pygame.display.init()
+            start_display()
             self._habits = habits or habits_of(profile)
             self._span = _span(view, self._habits)
             self._context = _open(profile, self._habits, self._span)

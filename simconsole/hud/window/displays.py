@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 from simconsole.hud.draw import Box
+from simconsole.hud.window.sdl_display import start_display
 from simconsole.profiles.view import DriverViewProfile
 from simconsole.values.errors import WorkerError
 
@@ -53,5 +54,5 @@ def display_places(numbers: Iterable[int]) -> dict[int, Box]:
         pygame.display.set_mode(sizes[number], flags=pygame.HIDDEN | pygame.NOFRAME, display=number)
         places[number] = Box(*pygame.display.get_window_position(), *sizes[number])
     pygame.display.quit()  # else the next window would be the hidden one, its OpenGL as large as that was
-    pygame.display.init()
+    start_display()
     return places

@@ -1,7 +1,6 @@
 """The cluster in a window that the processor draws."""
 
 import os
-import sys
 from typing import TYPE_CHECKING
 
 from simconsole.hud.aids import NO_AIDS, Aids, aid_panels
@@ -13,6 +12,7 @@ from simconsole.hud.window.display_memory import DisplayMemory
 from simconsole.hud.window.habits import Habits, habits_of
 from simconsole.hud.window.ports import Motion
 from simconsole.hud.window.raster import Painter
+from simconsole.hud.window.sdl_display import choose_display, start_display
 from simconsole.profiles.view import HudProfile
 from simconsole.values.errors import WorkerError
 from simconsole.values.state_vector import Snapshot
@@ -43,7 +43,7 @@ class Window:
         import pygame
 
         try:
-            pygame.display.init()
+            start_display()
             if pygame.display.get_driver() == "x11":
                 # SDL would send each frame through OpenGL: 130 against 600 frames a second where a processor draws.
                 os.environ.setdefault("SDL_FRAMEBUFFER_ACCELERATION", "0")
@@ -135,13 +135,3 @@ def dress_window(*, fullscreen: bool) -> None:
 
     pygame.display.set_caption("simconsole")
     pygame.mouse.set_visible(not fullscreen)
-
-
-def choose_display() -> None:
-    """Select SDL's `dummy` video driver where no desktop can be reached, unless the user names a driver.
-
-    Call it before SDL starts. SDL would fall back to `dummy` by itself, but its Wayland probe prints an error first.
-    """
-    reachable = ("DISPLAY", "WAYLAND_DISPLAY", "XDG_RUNTIME_DIR")
-    if sys.platform == "linux" and not any(os.environ.get(name) for name in reachable):
-        os.environ.setdefault("SDL_VIDEODRIVER", "dummy")

@@ -1,7 +1,5 @@
 """The page before a drive in a window of its own."""
 
-import os
-import sys
 from typing import Final
 
 from simconsole.hud.screen import fit, screen_of
@@ -9,18 +7,12 @@ from simconsole.hud.start_page import Act, StartPage, moved, start_page
 from simconsole.hud.window.habits import habits_of
 from simconsole.hud.window.pygame_window import dress_window, placed
 from simconsole.hud.window.raster import Painter
+from simconsole.hud.window.sdl_display import start_display
 from simconsole.profiles.view import HudProfile
 from simconsole.values.errors import WorkerError
 
 RATE_HZ: Final = 30
 _ACTS: Final = {"K_UP": Act.UP, "K_DOWN": Act.DOWN, "K_LEFT": Act.LEFT, "K_RIGHT": Act.RIGHT, "K_TAB": Act.RIGHT}
-
-
-def has_display() -> bool:
-    """Return whether a window would be seen by anybody."""
-    if os.environ.get("SDL_VIDEODRIVER") in ("dummy", "offscreen"):
-        return False
-    return sys.platform != "linux" or any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY"))
 
 
 def choose(page: StartPage, profile: HudProfile) -> StartPage | None:
@@ -33,7 +25,7 @@ def choose(page: StartPage, profile: HudProfile) -> StartPage | None:
     import pygame
 
     try:
-        pygame.display.init()
+        start_display()
         size, options = placed(profile, habits_of(profile))
         pygame.display.set_mode(size, **options)
     except pygame.error as problem:

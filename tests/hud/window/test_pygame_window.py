@@ -8,7 +8,7 @@ import pytest
 
 from simconsole.hud.draw import DrawItem
 from simconsole.hud.view import HudSettings
-from simconsole.hud.window.pygame_window import Window, choose_display
+from simconsole.hud.window.pygame_window import Window
 from simconsole.profiles.view import HudProfile
 from simconsole.values.errors import ProfileError
 from simconsole.values.state_vector import PLATFORM_AT, Snapshot
@@ -79,18 +79,6 @@ def test_without_a_desktop_it_draws_into_memory_and_says_nothing() -> None:
     environment = {**kept, "PYGAME_HIDE_SUPPORT_PROMPT": "1", "PYTHONPATH": os.pathsep.join(sys.path)}
     done = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
-
-
-@pytest.mark.parametrize("found", [{"SDL_VIDEODRIVER": "x11"}, {"DISPLAY": ":0"}, {"XDG_RUNTIME_DIR": "/run/user/1"}])
-def test_a_desktop_or_a_driver_that_the_user_names_is_left_to_sdl(
-    found: dict[str, str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    for name in (*DESKTOP, "SDL_VIDEODRIVER"):
-        monkeypatch.delenv(name, raising=False)
-    for name, value in found.items():
-        monkeypatch.setenv(name, value)
-    choose_display()
-    assert os.environ.get("SDL_VIDEODRIVER") == found.get("SDL_VIDEODRIVER")
 
 
 def test_an_illegible_seat_opens_no_window() -> None:

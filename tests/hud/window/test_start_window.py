@@ -8,7 +8,6 @@ from collections.abc import Iterator
 
 import pytest
 
-from simconsole.hud.window.start_window import has_display
 from tests.hud.window.x_server import hands, x_server
 from tests.patience import PATIENCE_S
 
@@ -55,22 +54,3 @@ def test_keys_choose_and_return_drives(display: str) -> None:
 
 def test_escape_leaves(display: str) -> None:
     assert pressed(display, "Escape") is None
-
-
-@pytest.mark.parametrize(
-    ("found", "seen"),
-    [
-        ({}, False),
-        ({"DISPLAY": ":0"}, True),
-        ({"WAYLAND_DISPLAY": "w"}, True),
-        ({"DISPLAY": ":0", "SDL_VIDEODRIVER": "dummy"}, False),
-    ],
-)
-def test_a_display_is_where_somebody_sees_it(
-    found: dict[str, str], seen: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    for name in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"):
-        monkeypatch.delenv(name, raising=False)
-    for name, value in found.items():
-        monkeypatch.setenv(name, value)
-    assert has_display() == seen

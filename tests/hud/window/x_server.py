@@ -16,6 +16,7 @@ def x_server(size: tuple[int, int] = SIZE) -> Iterator[str]:
     """Run a server with one display of this size; yield its name for DISPLAY."""
     reading, writing = os.pipe()
     command = ["Xvfb", "-displayfd", str(writing), "-screen", "0", f"{size[0]}x{size[1]}x24", "-nolisten", "tcp"]
+    command += ["-noreset"]  # a desktop stays when its last window closes; a reset would refuse one that just opens
     server = subprocess.Popen(command, pass_fds=[writing], stderr=subprocess.DEVNULL)
     os.close(writing)
     try:
